@@ -1,0 +1,1 @@
+//! lancer-accel
