@@ -1,0 +1,98 @@
+use glam::DVec3;
+
+use crate::Rgb;
+
+/// The index of a [`Material`] in [`Scene::materials`](super::Scene::materials).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct MaterialId(pub u32);
+
+/// The constants of the slides' illumination model.
+///
+/// | slide | here              | enters                                     |
+/// |-------|-------------------|--------------------------------------------|
+/// | ρ_d   | `rho_d`           | `eq:local`, and `eq:ambient` as its mean ρ̄ |
+/// | ρ_s   | `rho_s`           | `eq:local`                                 |
+/// | n     | `shininess`       | `eq:local`, the exponent of the highlight  |
+/// | k_s   | `k_s`             | `eq:recursion`, the share of the mirror ray |
+/// | k_t   | `k_t`             | `eq:recursion`, the share of the refracted ray |
+/// | n₂    | `refractive_index`| `eq:descartes`, inside the closed surface  |
+/// | ε     | `emission`        | added to what leaves the surface           |
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    /// Diffuse reflectance, per channel.
+    pub rho_d: Pigment,
+    /// Weight of the highlight, per channel.
+    pub rho_s: Rgb,
+    /// Exponent of the highlight, at least 0.
+    pub shininess: f64,
+    /// Share of the mirror ray, per channel.
+    pub k_s: Rgb,
+    /// Share of the refracted ray, per channel.
+    pub k_t: Rgb,
+    /// Refractive index of the inside; the outside is 1.
+    pub refractive_index: f64,
+    /// Emitted radiance. A face that emits is an area light.
+    pub emission: Rgb,
+}
+
+impl Material {
+    /// A matte surface of reflectance `rho_d`.
+    pub const fn matte(rho_d: Rgb) -> Self {
+        Self {
+            rho_d: Pigment::Solid(rho_d),
+            rho_s: Rgb::ZERO,
+            shininess: 1.0,
+            k_s: Rgb::ZERO,
+            k_t: Rgb::ZERO,
+            refractive_index: 1.0,
+            emission: Rgb::ZERO,
+        }
+    }
+
+    /// Whether the material emits, so that a face of it is an area light.
+    pub fn emits(&self) -> bool {
+        self.emission != Rgb::ZERO
+    }
+}
+
+/// The diffuse colour of a surface: one colour, or a checker of two.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pigment {
+    /// The same colour everywhere.
+    Solid(Rgb),
+    /// Squares of alternating colour, laid out in the coordinate plane that the surface faces most.
+    Checker {
+        /// The colour of the squares with an even coordinate sum; one of them starts at the origin.
+        even: Rgb,
+        /// The colour of the other squares.
+        odd: Rgb,
+        /// The side of a square, in scene units.
+        side: f64,
+    },
+}
+
+impl Pigment {
+    /// The colour at `position` of a surface with unit normal `n` (either sense).
+    ///
+    /// The checker ignores the coordinate along the largest component of `n`: on a floor y = 0 that
+    /// coordinate is rounding noise around a square's edge, and a checker in space would flicker.
+    #[inline]
+    pub fn at(&self, position: DVec3, n: DVec3) -> Rgb {
+        match *self {
+            Self::Solid(color) => color,
+            Self::Checker { even, odd, side } => {
+                let p = position / side;
+                let n = n.abs();
+                let (a, b) = if n.y >= n.x && n.y >= n.z {
+                    (p.x, p.z)
+                } else if n.x >= n.z {
+                    (p.y, p.z)
+                } else {
+                    (p.x, p.y)
+                };
+                let is_even = (a.floor() + b.floor()) % 2.0 == 0.0;
+                if is_even { even } else { odd }
+            }
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! What the slides describe: a camera, shapes, materials, lights, the ambient term and the background.
+//!
+//! A [`Scene`] holds no resolution, sample count or file name; those are settings of a method.
+
+mod camera;
+mod light;
+mod material;
+mod mesh;
+
+pub use camera::{Camera, PrimaryRays};
+pub use light::PointLight;
+pub use material::{Material, MaterialId, Pigment};
+pub use mesh::{Face, FaceId, Mesh, Triangle};
+
+use crate::Rgb;
+use crate::geometry::Sphere;
+
+/// A sphere and what it is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SphereObject {
+    /// Its geometry.
+    pub shape: Sphere,
+    /// Its material.
+    pub material: MaterialId,
+}
+
+/// Everything a method of the course draws.
+///
+/// All triangles stand in one [`Mesh`]: a scene file with several meshes appends them, so that a
+/// primitive is found by one index and a scene without spheres, or without triangles, pays nothing
+/// for them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// The pinhole camera.
+    pub camera: Camera,
+    /// Every triangle of the scene.
+    pub mesh: Mesh,
+    /// Every sphere of the scene.
+    pub spheres: Vec<SphereObject>,
+    /// The materials that faces and spheres name by [`MaterialId`].
+    pub materials: Vec<Material>,
+    /// Point lights. Area lights are the faces whose material emits.
+    pub lights: Vec<PointLight>,
+    /// The ambient radiance I_a of `eq:ambient`.
+    pub ambient: Rgb,
+    /// The radiance of a ray that leaves the scene (« couleur de fond »).
+    pub background: Rgb,
+}
+
+/// One primitive of a scene: triangles are numbered first, in mesh order, then spheres.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PrimitiveId(pub u32);
