@@ -10,8 +10,14 @@
 //! bits for any number of threads.
 
 pub mod geometry;
+pub mod illumination;
 pub mod image;
+pub mod intersector;
+pub mod optics;
+pub mod render;
+pub mod sampling;
 pub mod scene;
+pub mod world;
 
 /// Linear RGB: a radiance, an intensity or a reflectance, one `f64` per channel.
 pub type Rgb = glam::DVec3;

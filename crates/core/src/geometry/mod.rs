@@ -1,7 +1,23 @@
-//! Rays and the shapes they meet. Everything that decides or measures is `f64`.
+//! Rays, the shapes they meet and how they leave them again.
+//!
+//! Everything that decides or measures is `f64`. Error bounds use γ(n) = n·u / (1 − n·u), the usual
+//! bound on n rounded operations, with u = 2⁻⁵³ (Higham, *Accuracy and Stability of Numerical
+//! Algorithms*, §3.1).
 
+mod bounds;
+mod leave;
 mod ray;
 mod sphere;
+mod triangle;
 
+pub use bounds::{Bounds3, Slabs};
+pub use leave::leave_surface;
 pub use ray::{Interval, Ray};
 pub use sphere::Sphere;
+pub use triangle::{Shear, TriangleHit, intersect_triangle};
+
+/// γ(n): bounds the relative error of n rounded `f64` operations.
+pub(crate) const fn gamma(n: u32) -> f64 {
+    let nu = n as f64 * (0.5 * f64::EPSILON);
+    nu / (1.0 - nu)
+}

@@ -1,0 +1,192 @@
+//! The one open trait of the course: what answers "what does this ray meet?".
+//!
+//! Chapter 4 swaps the answerers; all of them must agree with [`LinearScan`] bit for bit.
+
+use glam::DVec3;
+
+use crate::geometry::{Bounds3, Interval, Ray, Shear, intersect_triangle};
+use crate::scene::{PrimitiveId, Scene};
+
+/// The closest primitive that a ray meets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// The ray parameter.
+    pub t: f64,
+    /// What is met.
+    pub primitive: PrimitiveId,
+    /// Weights of a triangle's corners; zero on a sphere, which has none.
+    pub barycentric: DVec3,
+}
+
+/// An index of a scene's primitives.
+///
+/// An answer does not depend on the index: of several primitives at the same `t` the one with the
+/// smallest [`PrimitiveId`] is the hit.
+pub trait Intersector: Sync {
+    /// The first primitive that the ray meets in `range`.
+    fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit>;
+
+    /// Whether the ray meets anything in `range`.
+    fn occluded(&self, ray: &Ray, range: Interval) -> bool;
+}
+
+/// Watches a traversal. The methods do nothing unless they are overridden, so watching costs nothing
+/// when nobody does.
+pub trait Observer {
+    /// A bounding volume is tested.
+    fn box_test(&mut self) {}
+    /// A primitive is tested.
+    fn primitive_test(&mut self, _primitive: PrimitiveId) {}
+}
+
+/// Nobody watches.
+impl Observer for () {}
+
+/// The work of traversals, the same on every machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TestCounts {
+    /// Bounding volumes tested.
+    pub boxes: u64,
+    /// Primitives tested.
+    pub primitives: u64,
+}
+
+impl Observer for TestCounts {
+    fn box_test(&mut self) {
+        self.boxes += 1;
+    }
+
+    fn primitive_test(&mut self, _primitive: PrimitiveId) {
+        self.primitives += 1;
+    }
+}
+
+/// A ray on its way through an index: the primitive tests, and the closest hit so far.
+///
+/// Every index decides through it, so the rule which hit wins stands once.
+#[derive(Clone, Copy, Debug)]
+pub struct Probe<'s> {
+    scene: &'s Scene,
+    ray: Ray,
+    range: Interval,
+    shear: Shear,
+    best: Option<Hit>,
+}
+
+impl<'s> Probe<'s> {
+    /// A ray that has met nothing yet.
+    #[inline]
+    pub fn new(scene: &'s Scene, ray: &Ray, range: Interval) -> Self {
+        Self { scene, ray: *ray, range, shear: Shear::new(ray.direction), best: None }
+    }
+
+    /// Tests one primitive and keeps it if it wins. Returns whether it was met at all.
+    #[inline]
+    pub fn test(&mut self, primitive: PrimitiveId) -> bool {
+        let Some((t, barycentric)) = self.intersect(primitive) else { return false };
+        let wins = t < self.range.max
+            || self.best.is_some_and(|best| t == best.t && primitive < best.primitive);
+        if t > self.range.min && wins {
+            self.range.max = t;
+            self.best = Some(Hit { t, primitive, barycentric });
+            return true;
+        }
+        false
+    }
+
+    #[inline]
+    fn intersect(&self, primitive: PrimitiveId) -> Option<(f64, DVec3)> {
+        let index = primitive.0 as usize;
+        let triangles = self.scene.mesh.triangles.len();
+        if index < triangles {
+            let corners = self.scene.mesh.corners(index);
+            intersect_triangle(corners, &self.ray, &self.shear).map(|hit| (hit.t, hit.barycentric))
+        } else {
+            // The sphere's own range test would hide ties at the far end from `test`.
+            let range = Interval { min: self.range.min, max: f64::INFINITY };
+            let t = self.scene.spheres[index - triangles].shape.intersect(&self.ray, range)?;
+            Some((t, DVec3::ZERO))
+        }
+    }
+
+    /// The interval in which a hit still counts: it ends at the closest one so far.
+    #[inline]
+    pub fn range(&self) -> Interval {
+        self.range
+    }
+
+    /// The closest hit so far.
+    #[inline]
+    pub fn best(&self) -> Option<Hit> {
+        self.best
+    }
+}
+
+/// Brute force: every primitive for every ray. The oracle of all other indexes.
+#[derive(Clone, Copy, Debug)]
+pub struct LinearScan<'s> {
+    scene: &'s Scene,
+}
+
+impl<'s> LinearScan<'s> {
+    /// There is nothing to build.
+    pub fn new(scene: &'s Scene) -> Self {
+        Self { scene }
+    }
+
+    /// Visits the primitives in order until `done` says so.
+    #[inline]
+    pub fn walk<O: Observer>(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        observer: &mut O,
+        done: impl Fn(&Probe) -> bool,
+    ) -> Option<Hit> {
+        let mut probe = Probe::new(self.scene, ray, range);
+        for primitive in self.scene.primitives() {
+            observer.primitive_test(primitive);
+            if probe.test(primitive) && done(&probe) {
+                break;
+            }
+        }
+        probe.best()
+    }
+}
+
+impl Intersector for LinearScan<'_> {
+    fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
+        self.walk(ray, range, &mut (), |_| false)
+    }
+
+    fn occluded(&self, ray: &Ray, range: Interval) -> bool {
+        self.walk(ray, range, &mut (), |_| true).is_some()
+    }
+}
+
+impl Scene {
+    /// The ids of all primitives, in order.
+    pub fn primitives(&self) -> impl ExactSizeIterator<Item = PrimitiveId> + use<> {
+        (0..(self.mesh.triangles.len() + self.spheres.len()) as u32).map(PrimitiveId)
+    }
+
+    /// The smallest box around one primitive.
+    pub fn primitive_bounds(&self, primitive: PrimitiveId) -> Bounds3 {
+        let index = primitive.0 as usize;
+        let triangles = self.mesh.triangles.len();
+        if index < triangles {
+            Bounds3::of_points(self.mesh.corners(index))
+        } else {
+            let sphere = self.spheres[index - triangles].shape;
+            let reach = DVec3::splat(sphere.radius);
+            Bounds3 { min: sphere.center - reach, max: sphere.center + reach }
+        }
+    }
+
+    /// The smallest box around everything.
+    pub fn bounds(&self) -> Bounds3 {
+        self.primitives()
+            .map(|primitive| self.primitive_bounds(primitive))
+            .fold(Bounds3::EMPTY, Bounds3::union)
+    }
+}

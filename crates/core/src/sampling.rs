@@ -1,0 +1,164 @@
+//! Where in a pixel its samples lie. Every position follows from (seed, pixel, sample index) alone, so
+//! a picture does not depend on who renders which pixel when.
+
+use glam::DVec2;
+use rand_pcg::Pcg32;
+use rand_pcg::rand_core::Rng;
+
+/// How the samples of a pixel are laid out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pattern {
+    /// The centres of a grid: one sample is the pixel's centre.
+    Regular,
+    /// One random point in each cell of that grid.
+    Jittered,
+    /// The Owen-scrambled Sobol sequence: any power of two of its points is stratified in both
+    /// directions at once (Burley, *Practical Hash-based Owen Scrambling*, JCGT 9(4), 2020).
+    Owen,
+}
+
+/// The samples of each pixel: their layout, number and seed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PixelSampling {
+    /// The layout.
+    pub pattern: Pattern,
+    /// Samples per pixel, at least 1.
+    pub samples: u32,
+    /// Picks one of the random layouts; `Regular` ignores it.
+    pub seed: u64,
+}
+
+impl PixelSampling {
+    /// One sample in the centre of each pixel.
+    pub const CENTER: Self = Self { pattern: Pattern::Regular, samples: 1, seed: 0 };
+
+    /// The film points of pixel (x, y), in pixels; the pixel covers [x, x+1) × [y, y+1).
+    #[inline]
+    pub fn points(self, x: u32, y: u32) -> impl Iterator<Item = DVec2> {
+        let corner = DVec2::new(f64::from(x), f64::from(y));
+        let key = pixel_key(self.seed, x, y);
+        let mut random = Pcg32::new(key, key);
+        let cells = grid(self.samples);
+        (0..self.samples).map(move |index| {
+            let cell = DVec2::new(f64::from(index % cells[0]), f64::from(index / cells[0]));
+            let cells = DVec2::new(f64::from(cells[0]), f64::from(cells[1]));
+            corner
+                + match self.pattern {
+                    Pattern::Regular => (cell + 0.5) / cells,
+                    Pattern::Jittered => {
+                        (cell + DVec2::new(uniform(&mut random), uniform(&mut random))) / cells
+                    }
+                    Pattern::Owen => owen(index, key),
+                }
+        })
+    }
+}
+
+/// The columns and rows of the most nearly square grid with `samples` cells.
+fn grid(samples: u32) -> [u32; 2] {
+    let rows = (1..=samples.isqrt()).rev().find(|rows| samples.is_multiple_of(*rows)).unwrap_or(1);
+    [samples / rows, rows]
+}
+
+/// A number in [0, 1) with 53 random bits.
+fn uniform(random: &mut Pcg32) -> f64 {
+    (random.next_u64() >> 11) as f64 * (0.5 * f64::EPSILON)
+}
+
+/// Point `index` of a pixel's Sobol sequence. The generator ends after 2^16 points; each further
+/// block of that length is another scrambling.
+fn owen(index: u32, key: u64) -> DVec2 {
+    const BLOCK: u32 = 1 << 16;
+    let seed = (key as u32).wrapping_add(index / BLOCK);
+    let coordinate = |dimension| f64::from(sobol_burley::sample(index % BLOCK, dimension, seed));
+    DVec2::new(coordinate(0), coordinate(1))
+}
+
+/// A well-mixed key for each (seed, pixel): the finaliser of SplitMix64 (Steele, Lea, Flood 2014).
+fn pixel_key(seed: u64, x: u32, y: u32) -> u64 {
+    let pixel = (u64::from(y) << 32) | u64::from(x);
+    let mut z = mix(seed).wrapping_add(pixel.wrapping_mul(0x9e37_79b9_7f4a_7c15));
+    z = mix(z);
+    z
+}
+
+fn mix(mut z: u64) -> u64 {
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_regular_sample_is_the_centre_and_four_are_the_quarters() {
+        let points = |samples| -> Vec<DVec2> {
+            PixelSampling { pattern: Pattern::Regular, samples, seed: 7 }.points(3, 5).collect()
+        };
+        assert_eq!(points(1), [DVec2::new(3.5, 5.5)]);
+        let quarters = [(3.25, 5.25), (3.75, 5.25), (3.25, 5.75), (3.75, 5.75)];
+        assert_eq!(points(4), quarters.map(DVec2::from));
+    }
+
+    #[test]
+    fn grids_are_as_square_as_the_count_allows() {
+        assert_eq!(
+            [1, 2, 6, 7, 16, 64].map(grid),
+            [[1, 1], [2, 1], [3, 2], [7, 1], [4, 4], [8, 8]]
+        );
+    }
+
+    #[test]
+    fn every_cell_holds_one_jittered_point() {
+        let sampling = PixelSampling { pattern: Pattern::Jittered, samples: 16, seed: 1 };
+        let mut cells: Vec<u32> = sampling
+            .points(9, 2)
+            .map(|p| 4 * ((p.y - 2.0) * 4.0) as u32 + ((p.x - 9.0) * 4.0) as u32)
+            .collect();
+        cells.sort_unstable();
+        assert_eq!(cells, (0..16).collect::<Vec<_>>());
+    }
+
+    /// The defining property of a (0, 2)-sequence: of the first 2^k points, every elementary interval
+    /// of area 2^−k holds exactly one, whatever its shape.
+    #[test]
+    fn every_elementary_interval_holds_one_owen_point() {
+        for k in 2..=10u32 {
+            let sampling = PixelSampling { pattern: Pattern::Owen, samples: 1 << k, seed: 3 };
+            let points: Vec<DVec2> = sampling.points(0, 0).collect();
+            for split in 0..=k {
+                let (columns, rows) = (1u32 << split, 1u32 << (k - split));
+                let mut seen = vec![false; 1 << k];
+                for p in &points {
+                    let column = (p.x * f64::from(columns)) as u32;
+                    let row = (p.y * f64::from(rows)) as u32;
+                    let cell = &mut seen[(row * columns + column) as usize];
+                    assert!(!*cell, "two points in one interval, k = {k}, {columns} x {rows}");
+                    *cell = true;
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_sequence_longer_than_its_generator_goes_on() {
+        let sampling = PixelSampling { pattern: Pattern::Owen, samples: (1 << 16) + 4, seed: 3 };
+        let points: Vec<DVec2> = sampling.points(0, 0).collect();
+        assert_ne!(points[..4], points[1 << 16..]);
+        assert!(points.iter().all(|p| p.min_element() >= 0.0 && p.max_element() < 1.0));
+    }
+
+    #[test]
+    fn neighbouring_pixels_and_seeds_differ() {
+        let first = |x, seed| {
+            PixelSampling { pattern: Pattern::Jittered, samples: 1, seed }
+                .points(x, 0)
+                .next()
+                .map(|p| p.fract())
+        };
+        assert_ne!(first(0, 0), first(1, 0));
+        assert_ne!(first(0, 0), first(0, 1));
+    }
+}

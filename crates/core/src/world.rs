@@ -1,0 +1,233 @@
+//! A scene with an index of it, and what a hit tells about the surface there.
+
+use glam::DVec3;
+
+use crate::Rgb;
+use crate::geometry::{Ray, gamma, leave_surface};
+use crate::intersector::{Hit, Intersector};
+use crate::optics::reflect;
+use crate::scene::{Material, MaterialId, Scene};
+
+/// What a method renders: a scene and an index of its primitives.
+#[derive(Clone, Copy)]
+pub struct World<'a> {
+    /// What there is.
+    pub scene: &'a Scene,
+    /// Answers what a ray meets. It borrows the same scene.
+    pub index: &'a dyn Intersector,
+}
+
+/// A point of a surface, worked out once for the closest hit.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfacePoint {
+    /// The point, on the surface up to `error`.
+    pub position: DVec3,
+    /// Bound of the position's distance from the true surface, per coordinate.
+    pub error: DVec3,
+    /// Unit normal of the shape itself, pointing outwards.
+    pub geometric_normal: DVec3,
+    /// Unit normal for shading, on the same side: interpolated over smooth triangles.
+    pub shading_normal: DVec3,
+    /// Where shadow rays start: `position`, lifted onto the surface that the vertex normals suggest,
+    /// so that the facets of a smooth mesh do not shade each other at the terminator.
+    pub lifted: DVec3,
+    /// What the surface is made of.
+    pub material: MaterialId,
+}
+
+impl Scene {
+    /// The surface at a hit of `ray`.
+    #[inline]
+    pub fn surface_at(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
+        let index = hit.primitive.0 as usize;
+        let triangles = self.mesh.triangles.len();
+        if index < triangles {
+            self.triangle_surface(index, hit.barycentric)
+        } else {
+            self.sphere_surface(index - triangles, ray.at(hit.t))
+        }
+    }
+
+    /// The material of a surface.
+    #[inline]
+    pub fn material(&self, id: MaterialId) -> &Material {
+        &self.materials[id.0 as usize]
+    }
+
+    #[inline]
+    fn triangle_surface(&self, index: usize, weights: DVec3) -> SurfacePoint {
+        let corners = self.mesh.corners(index);
+        // From the corners rather than the ray: the error does not grow with the distance travelled.
+        let [a, b, c] = [weights.x * corners[0], weights.y * corners[1], weights.z * corners[2]];
+        let position = a + b + c;
+        let geometric_normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize();
+        let face = self.mesh.triangles[index].face;
+        let flat = SurfacePoint {
+            position,
+            error: gamma(7) * (a.abs() + b.abs() + c.abs()),
+            geometric_normal,
+            shading_normal: geometric_normal,
+            lifted: position,
+            material: self.mesh.faces[face.0 as usize].material,
+        };
+        match self.mesh.corner_normals(index) {
+            Some(normals) => smooth(flat, corners, normals, weights),
+            None => flat,
+        }
+    }
+
+    #[inline]
+    fn sphere_surface(&self, index: usize, near: DVec3) -> SurfacePoint {
+        let object = &self.spheres[index];
+        let (center, radius) = (object.shape.center, object.shape.radius);
+        // Back onto the sphere: the error of `near` grows with the distance travelled.
+        let n = (near - center).normalize();
+        let position = center + radius * n;
+        SurfacePoint {
+            position,
+            error: gamma(12) * (center.abs() + DVec3::splat(radius)),
+            geometric_normal: n,
+            shading_normal: n,
+            lifted: position,
+            material: object.material,
+        }
+    }
+}
+
+/// Interpolates the normal, and lifts the origin of shadow rays (Hanika, *Hacking the Shadow
+/// Terminator*, Ray Tracing Gems II ch. 4).
+fn smooth(
+    flat: SurfacePoint,
+    corners: [DVec3; 3],
+    normals: [DVec3; 3],
+    weights: DVec3,
+) -> SurfacePoint {
+    let weights = weights.to_array();
+    let mut normal = DVec3::ZERO;
+    let mut lifted = flat.position;
+    for ((corner, n), weight) in corners.into_iter().zip(normals).zip(weights) {
+        // Authors' normals may point inwards; the lift and the shading must not.
+        let n = if n.dot(flat.geometric_normal) < 0.0 { -n } else { n };
+        normal += weight * n;
+        lifted -= weight * (flat.position - corner).dot(n).min(0.0) * n;
+    }
+    SurfacePoint {
+        shading_normal: normal.try_normalize().unwrap_or(flat.geometric_normal),
+        lifted,
+        ..flat
+    }
+}
+
+impl SurfacePoint {
+    /// The unit shading normal on the side of the surface that `to_eye` points to.
+    #[inline]
+    pub fn shading_normal_towards(&self, to_eye: DVec3) -> DVec3 {
+        if self.geometric_normal.dot(to_eye) < 0.0 {
+            -self.shading_normal
+        } else {
+            self.shading_normal
+        }
+    }
+
+    /// The unit normal that mirrors and refracts a ray arriving along `incident`, on the side it comes
+    /// from: the shading normal, unless its mirror ray would pass through the surface.
+    #[inline]
+    pub fn optical_normal(&self, incident: DVec3) -> DVec3 {
+        let side = if self.geometric_normal.dot(incident) > 0.0 { -1.0 } else { 1.0 };
+        let (geometric, shading) = (side * self.geometric_normal, side * self.shading_normal);
+        let turns_back =
+            |n: DVec3| n.dot(incident) < 0.0 && reflect(incident, n).dot(geometric) > 0.0;
+        if self.shading_normal == self.geometric_normal || !turns_back(shading) {
+            geometric
+        } else {
+            shading
+        }
+    }
+
+    /// The ray that leaves the surface in `direction`, to either side.
+    #[inline]
+    pub fn spawn(&self, direction: DVec3) -> Ray {
+        let origin = leave_surface(self.position, self.error, self.geometric_normal, direction);
+        Ray::new(origin, direction)
+    }
+
+    /// The ray from the surface to `target`, which it reaches at t = 1.
+    #[inline]
+    pub fn spawn_to(&self, target: DVec3) -> Ray {
+        let towards = target - self.lifted;
+        let origin = leave_surface(self.lifted, self.error, self.geometric_normal, towards);
+        Ray::new(origin, target - origin)
+    }
+}
+
+/// A light as methods without area lights see it: a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointSource {
+    /// Where it stands.
+    pub position: DVec3,
+    /// Power per solid angle, in the brightest direction.
+    pub intensity: Rgb,
+    /// For an emitting face its unit normal, the brightest direction; `None` shines everywhere alike.
+    pub facing: Option<DVec3>,
+}
+
+impl PointSource {
+    /// The intensity in the direction `-to_light`, where `to_light` is unit and points at the source.
+    #[inline]
+    pub fn intensity_towards(&self, to_light: DVec3) -> Rgb {
+        match self.facing {
+            None => self.intensity,
+            Some(n) => self.intensity * (-n.dot(to_light)).max(0.0),
+        }
+    }
+}
+
+impl Scene {
+    /// All lights as points: the point lights, then each emitting face.
+    ///
+    /// A face of area A and radiance L becomes a source of intensity L·A·cos θ at its centroid: the
+    /// same power π·L·A with the same cosine, so that only its size, the penumbra, is lost. It stands
+    /// off the face by the centroid's rounding error, on the side it shines to.
+    pub fn point_sources(&self) -> Vec<PointSource> {
+        let points = self.lights.iter().map(|light| PointSource {
+            position: light.position,
+            intensity: light.intensity,
+            facing: None,
+        });
+        points.chain(self.emitting_faces()).collect()
+    }
+
+    fn emitting_faces(&self) -> impl Iterator<Item = PointSource> + '_ {
+        let mesh = &self.mesh;
+        let emits = |face: &crate::scene::Face| self.material(face.material).emits();
+        let any = self.materials.iter().any(Material::emits);
+        let groups = if any { mesh.triangles.as_slice() } else { &[] };
+        let mut first = 0;
+        groups
+            .chunk_by(|a, b| a.face == b.face)
+            .map(move |group| {
+                let range = first..first + group.len();
+                first = range.end;
+                (mesh.faces[group[0].face.0 as usize], range)
+            })
+            .filter(move |(face, _)| emits(face))
+            .filter_map(|(face, triangles)| {
+                let (mut area_vector, mut moment, mut area) = (DVec3::ZERO, DVec3::ZERO, 0.0);
+                for index in triangles {
+                    let [a, b, c] = mesh.corners(index);
+                    let twice = (b - a).cross(c - a);
+                    area_vector += 0.5 * twice;
+                    area += 0.5 * twice.length();
+                    moment += 0.5 * twice.length() * (a + b + c) / 3.0;
+                }
+                let n = area_vector.try_normalize()?;
+                let centroid = moment / area;
+                let error = gamma(16) * centroid.abs();
+                Some(PointSource {
+                    position: leave_surface(centroid, error, n, n),
+                    intensity: self.material(face.material).emission * area,
+                    facing: Some(n),
+                })
+            })
+    }
+}
