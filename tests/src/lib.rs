@@ -1,1 +1,1 @@
-//! lancer-tests
+//! What only holds between chapters; see `suite/`.

@@ -6,5 +6,6 @@
 //! by one shared `f64` test, [`lancer_core::intersector::Probe`].
 
 mod obvhs_bvh2;
+mod pair_slabs;
 
 pub use obvhs_bvh2::ObvhsBvh2;

@@ -1,83 +1,76 @@
-use glam::{DVec3, Vec3, Vec3A};
-use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
+use glam::Vec3A;
+use lancer_core::geometry::{Interval, Ray};
 use lancer_core::intersector::{Hit, Intersector, Observer, Probe};
 use lancer_core::scene::{PrimitiveId, Scene};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
-use obvhs::bvh2::node::Bvh2Node;
+use smallvec::SmallVec;
+
+use crate::pair_slabs::{Frame, PairBounds, PairSlabs};
 
 /// A binary bounding volume hierarchy built by the obvhs library and walked here.
 ///
 /// The library builds good trees fast, in `f32`. Its own traversal and triangle test are made for
-/// speed and lose rays aimed at edges and vertices, so only its nodes are used: they hold boxes
-/// recentred on the scene and rounded outwards, which an `f64` slab test visits conservatively.
+/// speed and lose rays aimed at edges and vertices, so only its tree is taken over: boxes in `f32`,
+/// rounded outwards, visited conservatively, and primitives decided in `f64`.
 pub struct ObvhsBvh2<'s> {
     scene: &'s Scene,
-    tree: Bvh2,
-    /// The origin of the nodes' coordinates.
-    center: DVec3,
+    frame: Frame,
+    root: Option<Child>,
+    pairs: Vec<Pair>,
+    /// The primitives of the leaves, leaf by leaf.
+    primitives: Vec<PrimitiveId>,
 }
 
-/// A node still to be visited, and the parameter at which the ray enters it.
-type Pending = (u32, f64);
-
-/// What is still to be visited. Trees deeper than the array are rare and pay for an allocation.
-struct Stack {
-    held: [Pending; 64],
-    len: usize,
-    spilled: Vec<Pending>,
+/// The two children of an inner node, one cache line.
+#[repr(align(64))]
+struct Pair {
+    bounds: PairBounds,
+    children: [Child; 2],
 }
 
-impl Stack {
-    fn new() -> Self {
-        Self { held: [(0, 0.0); 64], len: 0, spilled: Vec::new() }
-    }
-
-    #[inline(always)]
-    fn push(&mut self, pending: Pending) {
-        if self.len < self.held.len() {
-            self.held[self.len] = pending;
-            self.len += 1;
-        } else {
-            self.spilled.push(pending);
-        }
-    }
-
-    #[inline(always)]
-    fn pop(&mut self) -> Option<Pending> {
-        if let Some(pending) = self.spilled.pop() {
-            return Some(pending);
-        }
-        self.len = self.len.checked_sub(1)?;
-        Some(self.held[self.len])
-    }
+/// An inner node, whose children are `pairs[first]`, if `count` is 0; else a leaf with the primitives
+/// `first .. first + count`.
+#[derive(Clone, Copy, Debug)]
+struct Child {
+    first: u32,
+    count: u32,
 }
+
+/// A child still to be visited, and the parameter at which the ray enters it.
+type Pending = (Child, f32);
+
+/// What is still to be visited. A tree deeper than 64 is rare and pays for an allocation.
+type Stack = SmallVec<[Pending; 64]>;
 
 impl<'s> ObvhsBvh2<'s> {
     /// Builds the tree over all primitives of the scene.
     pub fn build(scene: &'s Scene) -> Self {
-        let bounds = scene.bounds();
-        let center = if bounds.is_empty() { DVec3::ZERO } else { bounds.center() };
-        // Covers hits that the primitive test places a rounding error beside the primitive.
-        let margin = f64::from(f32::EPSILON) * bounds.diagonal();
+        let frame = Frame::of(scene.bounds());
         let boxes: Vec<Aabb> = scene
             .primitives()
-            .map(|primitive| outwards(scene.primitive_bounds(primitive), center, margin))
+            .map(|primitive| {
+                let [min, max] = frame.outwards(scene.primitive_bounds(primitive));
+                Aabb::new(Vec3A::from_array(min), Vec3A::from_array(max))
+            })
             .collect();
         let tree = if boxes.is_empty() {
             Bvh2::default()
         } else {
             build_bvh2(&boxes, BvhBuildParams::medium_build(), &mut Default::default())
         };
-        Self { scene, tree, center }
+        drop(boxes);
+        let mut pairs = Vec::with_capacity(tree.nodes.len() / 2);
+        let root = (!tree.nodes.is_empty()).then(|| take_over(&tree, &mut pairs));
+        let primitives = tree.primitive_indices.into_iter().map(PrimitiveId).collect();
+        Self { scene, frame, root, pairs, primitives }
     }
 
     /// Bytes held by the index, without the scene it borrows.
     pub fn memory(&self) -> usize {
-        size_of_val(self.tree.nodes.as_slice())
-            + size_of_val(self.tree.primitive_indices.as_slice())
+        size_of_val(self.pairs.as_slice()) + size_of_val(self.primitives.as_slice())
     }
 
     /// Visits the primitives whose boxes the ray meets, near boxes first, until `done` says so.
@@ -90,54 +83,92 @@ impl<'s> ObvhsBvh2<'s> {
         done: impl Fn(&Probe) -> bool,
     ) -> Option<Hit> {
         let mut probe = Probe::new(self.scene, ray, range);
-        let slabs = Slabs::new(&Ray::new(ray.origin - self.center, ray.direction));
+        let slabs = PairSlabs::new(ray, &self.frame);
+        let mut max = slabs.parameter(range.max);
         let mut stack = Stack::new();
-        let enter = |index: u32, range: Interval, observer: &mut O| {
-            observer.box_test();
-            let Bvh2Node { min, max, .. } = self.tree.nodes[index as usize];
-            slabs.enter(min.as_dvec3(), max.as_dvec3(), range)
-        };
-
-        let root = if self.tree.nodes.is_empty() { None } else { enter(0, range, observer) };
-        let mut next = root.map(|near| (0, near));
-        while let Some((index, near)) = next {
-            next = None;
-            if near <= probe.range().max {
-                let node = &self.tree.nodes[index as usize];
-                if node.is_leaf() {
-                    let first = node.first_index as usize;
-                    let leaf = first..first + node.prim_count as usize;
-                    for &primitive in &self.tree.primitive_indices[leaf] {
-                        let primitive = PrimitiveId(primitive);
-                        observer.primitive_test(primitive);
-                        if probe.test(primitive) && done(&probe) {
-                            return probe.best();
-                        }
+        let mut next = self.root;
+        while let Some(child) = next {
+            if child.count > 0 {
+                let leaf = child.first as usize..(child.first + child.count) as usize;
+                for &primitive in &self.primitives[leaf] {
+                    observer.primitive_test(primitive);
+                    if probe.test(primitive) && done(&probe) {
+                        return probe.best();
                     }
-                } else {
-                    let (left, right) = (node.first_index, node.first_index + 1);
-                    let range = probe.range();
-                    next = match (enter(left, range, observer), enter(right, range, observer)) {
-                        (Some(l), Some(r)) if l <= r => {
-                            stack.push((right, r));
-                            Some((left, l))
-                        }
-                        (Some(l), Some(r)) => {
-                            stack.push((left, l));
-                            Some((right, r))
-                        }
-                        (Some(l), None) => Some((left, l)),
-                        (None, Some(r)) => Some((right, r)),
-                        (None, None) => None,
-                    };
                 }
+                max = slabs.parameter(probe.range().max);
+                next = pop(&mut stack, max);
+                continue;
             }
-            if next.is_none() {
-                next = stack.pop();
-            }
+            let pair = &self.pairs[child.first as usize];
+            observer.box_test();
+            observer.box_test();
+            let [left, right] = pair.children;
+            next = match slabs.enter(&pair.bounds, max) {
+                [Some(l), Some(r)] if l <= r => {
+                    stack.push((right, r));
+                    Some(left)
+                }
+                [Some(l), Some(_)] => {
+                    stack.push((left, l));
+                    Some(right)
+                }
+                [Some(_), None] => Some(left),
+                [None, Some(_)] => Some(right),
+                [None, None] => pop(&mut stack, max),
+            };
         }
         probe.best()
     }
+}
+
+/// The next child that is not entirely behind the closest hit.
+#[inline(always)]
+fn pop(stack: &mut Stack, max: f32) -> Option<Child> {
+    loop {
+        let (child, near) = stack.pop()?;
+        if near <= max {
+            return Some(child);
+        }
+    }
+}
+
+/// Copies the tree into pairs, in depth-first order, and returns its root.
+fn take_over(tree: &Bvh2, pairs: &mut Vec<Pair>) -> Child {
+    const LATER: u32 = u32::MAX;
+    let child = |index: u32| {
+        let node = &tree.nodes[index as usize];
+        Child {
+            first: if node.is_leaf() { node.first_index } else { LATER },
+            count: node.prim_count,
+        }
+    };
+    let corners = |index: u32| {
+        let node = &tree.nodes[index as usize];
+        [node.min.to_array(), node.max.to_array()]
+    };
+    let mut root = child(0);
+    // (index in the tree, the pair and side that refer to it)
+    let mut pending: Vec<(u32, Option<(usize, usize)>)> = vec![(0, None)];
+    while let Some((index, referrer)) = pending.pop() {
+        let node = &tree.nodes[index as usize];
+        if node.is_leaf() {
+            continue;
+        }
+        let (left, right) = (node.first_index, node.first_index + 1);
+        let pair = pairs.len();
+        pairs.push(Pair {
+            bounds: PairBounds::new(corners(left), corners(right)),
+            children: [child(left), child(right)],
+        });
+        match referrer {
+            Some((parent, side)) => pairs[parent].children[side].first = pair as u32,
+            None => root.first = pair as u32,
+        }
+        pending.push((right, Some((pair, 1))));
+        pending.push((left, Some((pair, 0))));
+    }
+    root
 }
 
 impl Intersector for ObvhsBvh2<'_> {
@@ -148,13 +179,4 @@ impl Intersector for ObvhsBvh2<'_> {
     fn occluded(&self, ray: &Ray, range: Interval) -> bool {
         self.walk(ray, range, &mut (), |_| true).is_some()
     }
-}
-
-/// The box relative to `center`, grown by `margin` and rounded outwards to `f32`.
-fn outwards(bounds: Bounds3, center: DVec3, margin: f64) -> Aabb {
-    let down = |v: DVec3| v.as_vec3().to_array().map(f32::next_down);
-    let up = |v: DVec3| v.as_vec3().to_array().map(f32::next_up);
-    let min = Vec3::from(down(bounds.min - center - margin));
-    let max = Vec3::from(up(bounds.max - center + margin));
-    Aabb::new(Vec3A::from(min), Vec3A::from(max))
 }

@@ -67,7 +67,7 @@ impl Observer for TestCounts {
 #[derive(Clone, Copy, Debug)]
 pub struct Probe<'s> {
     scene: &'s Scene,
-    ray: Ray,
+    ray: &'s Ray,
     range: Interval,
     shear: Shear,
     best: Option<Hit>,
@@ -76,8 +76,8 @@ pub struct Probe<'s> {
 impl<'s> Probe<'s> {
     /// A ray that has met nothing yet.
     #[inline]
-    pub fn new(scene: &'s Scene, ray: &Ray, range: Interval) -> Self {
-        Self { scene, ray: *ray, range, shear: Shear::new(ray.direction), best: None }
+    pub fn new(scene: &'s Scene, ray: &'s Ray, range: Interval) -> Self {
+        Self { scene, ray, range, shear: Shear::new(ray.direction), best: None }
     }
 
     /// Tests one primitive and keeps it if it wins. Returns whether it was met at all.
@@ -100,11 +100,11 @@ impl<'s> Probe<'s> {
         let triangles = self.scene.mesh.triangles.len();
         if index < triangles {
             let corners = self.scene.mesh.corners(index);
-            intersect_triangle(corners, &self.ray, &self.shear).map(|hit| (hit.t, hit.barycentric))
+            intersect_triangle(corners, self.ray, &self.shear).map(|hit| (hit.t, hit.barycentric))
         } else {
             // The sphere's own range test would hide ties at the far end from `test`.
             let range = Interval { min: self.range.min, max: f64::INFINITY };
-            let t = self.scene.spheres[index - triangles].shape.intersect(&self.ray, range)?;
+            let t = self.scene.spheres[index - triangles].shape.intersect(self.ray, range)?;
             Some((t, DVec3::ZERO))
         }
     }

@@ -9,6 +9,7 @@
 //! values out, with no globals, clocks or entropy, so that a run with the same seed gives the same
 //! bits for any number of threads.
 
+pub mod generate;
 pub mod geometry;
 pub mod illumination;
 pub mod image;

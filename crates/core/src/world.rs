@@ -8,6 +8,13 @@ use crate::intersector::{Hit, Intersector};
 use crate::optics::reflect;
 use crate::scene::{Material, MaterialId, Scene};
 
+/// Rounded operations between a triangle's corners and the point that its weights give.
+const POSITION: u32 = 7;
+/// The same from a sphere to a point of it, and back to the sign of |o − c|² − r² there.
+const SPHERE: u32 = 12;
+/// Rounded operations of [`leave_surface`] itself.
+const LEAVING: u32 = 4;
+
 /// What a method renders: a scene and an index of its primitives.
 #[derive(Clone, Copy)]
 pub struct World<'a> {
@@ -64,7 +71,7 @@ impl Scene {
         let face = self.mesh.triangles[index].face;
         let flat = SurfacePoint {
             position,
-            error: gamma(7) * (a.abs() + b.abs() + c.abs()),
+            error: gamma(POSITION + LEAVING) * (a.abs() + b.abs() + c.abs()),
             geometric_normal,
             shading_normal: geometric_normal,
             lifted: position,
@@ -85,7 +92,7 @@ impl Scene {
         let position = center + radius * n;
         SurfacePoint {
             position,
-            error: gamma(12) * (center.abs() + DVec3::splat(radius)),
+            error: gamma(SPHERE + LEAVING) * (center.abs() + DVec3::splat(radius)),
             geometric_normal: n,
             shading_normal: n,
             lifted: position,

@@ -54,7 +54,7 @@ impl<'a> Lighting<'a> {
             for source in &self.sources {
                 let shadow_ray = surface.spawn_to(source.position);
                 let distance = shadow_ray.direction.length();
-                let to_light = shadow_ray.direction / distance;
+                let to_light = shadow_ray.direction * distance.recip();
                 let intensity = source.intensity_towards(to_light);
                 if n.dot(to_light) > 0.0 && intensity != Rgb::ZERO {
                     let visible = !self.world.index.occluded(&shadow_ray, Interval::up_to(1.0));

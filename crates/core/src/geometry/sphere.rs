@@ -19,9 +19,10 @@ impl Sphere {
     /// ```
     ///
     /// The textbook discriminant (F·D)² − (D·D)(F·F − r²) cancels when the sphere is far or small.
-    /// Here it comes from l, the vector from the centre to the ray's closest point: D·D (r² − l·l),
-    /// and the root that would cancel comes from the product of the roots. Source: Haines, Günther,
-    /// Akenine-Möller, *Precision Improvements for Ray/Sphere Intersection*, Ray Tracing Gems ch. 7.
+    /// Here it comes from the distance of the centre to the line, (D·D) r² − |F×D|², and the root that
+    /// would cancel comes from the product of the roots. Source: Haines, Günther, Akenine-Möller,
+    /// *Precision Improvements for Ray/Sphere Intersection*, Ray Tracing Gems ch. 7 (their vector from
+    /// the centre to the closest point has the length |F×D| / |D|; this form needs no division).
     ///
     /// The near root is dropped when it is below its own error bound, so that a ray leaving the
     /// sphere does not meet it again where it starts.
@@ -30,15 +31,14 @@ impl Sphere {
     pub fn intersect(&self, ray: &Ray, range: Interval) -> Option<f64> {
         let (f, d) = (ray.origin - self.center, ray.direction);
         let dd = d.length_squared();
-        let fd = f.dot(d);
         let rr = self.radius * self.radius;
-        let l = f - (fd / dd) * d;
-        let reach = rr - l.length_squared();
+        let discriminant = dd * rr - f.cross(d).length_squared();
         // `>=` accepts: a NaN anywhere above ends here as a miss.
-        if !(reach >= 0.0 && self.radius > 0.0) {
+        if !(discriminant >= 0.0 && self.radius > 0.0) {
             return None;
         }
-        let q = -fd - (dd * reach).sqrt().copysign(fd);
+        let fd = f.dot(d);
+        let q = -fd - discriminant.sqrt().copysign(fd);
         let ff = f.length_squared();
         let product = ff - rr;
         let error = gamma(8) * (ff + rr);

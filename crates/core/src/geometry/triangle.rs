@@ -24,11 +24,11 @@ enum Axis {
 impl Axis {
     /// Cyclic renaming of the components that makes this axis the last.
     #[inline(always)]
-    fn to_last(self, v: DVec3) -> DVec3 {
+    fn to_last(self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         match self {
-            Self::X => DVec3::new(v.y, v.z, v.x),
-            Self::Y => DVec3::new(v.z, v.x, v.y),
-            Self::Z => v,
+            Self::X => [y, z, x],
+            Self::Y => [z, x, y],
+            Self::Z => [x, y, z],
         }
     }
 }
@@ -45,9 +45,9 @@ impl Shear {
         } else {
             Axis::Z
         };
-        let d = axis.to_last(direction);
-        let z = 1.0 / d.z;
-        Self { axis, x: d.x * z, y: d.y * z, z }
+        let [x, y, z] = axis.to_last(direction.to_array());
+        let z = 1.0 / z;
+        Self { axis, x: x * z, y: y * z, z }
     }
 }
 
@@ -81,10 +81,21 @@ pub struct TriangleHit {
 #[doc(alias = "eq:ray-triangle")]
 #[inline]
 pub fn intersect_triangle(corners: [DVec3; 3], ray: &Ray, shear: &Shear) -> Option<TriangleHit> {
-    let [a, b, c] = corners.map(|corner| shear.axis.to_last(corner - ray.origin));
-    let (ax, ay) = (a.x - shear.x * a.z, a.y - shear.y * a.z);
-    let (bx, by) = (b.x - shear.x * b.z, b.y - shear.y * b.z);
-    let (cx, cy) = (c.x - shear.x * c.z, c.y - shear.y * c.z);
+    let [a, b, c] = corners.map(|corner| (corner - ray.origin).to_array());
+    match shear.axis {
+        Axis::X => sheared(Axis::X, [a, b, c], shear),
+        Axis::Y => sheared(Axis::Y, [a, b, c], shear),
+        Axis::Z => sheared(Axis::Z, [a, b, c], shear),
+    }
+}
+
+/// The test for one renaming of the axes; `axis` is a constant at each call.
+#[inline(always)]
+fn sheared(axis: Axis, corners: [[f64; 3]; 3], shear: &Shear) -> Option<TriangleHit> {
+    let [[ax, ay, az], [bx, by, bz], [cx, cy, cz]] = corners.map(|corner| axis.to_last(corner));
+    let (ax, ay) = (ax - shear.x * az, ay - shear.y * az);
+    let (bx, by) = (bx - shear.x * bz, by - shear.y * bz);
+    let (cx, cy) = (cx - shear.x * cz, cy - shear.y * cz);
 
     let u = cx * by - cy * bx;
     let v = ax * cy - ay * cx;
@@ -97,15 +108,14 @@ pub fn intersect_triangle(corners: [DVec3; 3], ray: &Ray, shear: &Shear) -> Opti
         return None;
     }
     let inverse = 1.0 / det;
-    let (az, bz, cz) = (shear.z * a.z, shear.z * b.z, shear.z * c.z);
+    let reach = max_abs(az, bz, cz);
+    let (az, bz, cz) = (shear.z * az, shear.z * bz, shear.z * cz);
     let t = (u * az + v * bz + w * cz) * inverse;
 
-    let max_z = max_abs(az, bz, cz);
-    let slope_z = max_abs(a.z, b.z, c.z);
-    let (max_x, max_y) = (max_abs(ax, bx, cx), max_abs(ay, by, cy));
+    let (max_x, max_y, max_z) = (max_abs(ax, bx, cx), max_abs(ay, by, cy), max_abs(az, bz, cz));
     let max_e = max_abs(u, v, w);
-    let dx = gamma(5) * (max_x + shear.x.abs() * slope_z);
-    let dy = gamma(5) * (max_y + shear.y.abs() * slope_z);
+    let dx = gamma(5) * (max_x + shear.x.abs() * reach);
+    let dy = gamma(5) * (max_y + shear.y.abs() * reach);
     let dz = gamma(3) * max_z;
     let de = 2.0 * (gamma(2) * max_x * max_y + dy * max_x + dx * max_y);
     let dt = 3.0 * (gamma(3) * max_e * max_z + de * max_z + dz * max_e) * inverse.abs();

@@ -1,0 +1,200 @@
+//! Every index returns the hit of brute force, the same t bit for bit and the same primitive, for rays
+//! aimed where indexes go wrong.
+
+use glam::DVec3;
+use lancer_accel::ObvhsBvh2;
+use lancer_core::generate::icosphere;
+use lancer_core::geometry::{Interval, Ray, Sphere};
+use lancer_core::intersector::{Intersector, LinearScan};
+use lancer_core::scene::{MaterialId, Mesh, Scene, SphereObject};
+
+use crate::meshes::{OFFSETS, cube, moved, scene_of};
+use crate::random::Random;
+
+/// The ways of aiming, each known to break some index.
+const CLASSES: [&str; 8] = [
+    "at a vertex",
+    "at an edge",
+    "along an axis through a vertex",
+    "vertex to vertex",
+    "in an axis plane through a vertex",
+    "from the surface",
+    "from far away",
+    "random",
+];
+
+fn aimed(class: &str, mesh: &Mesh, offset: DVec3, random: &mut Random) -> Ray {
+    let pick = |random: &mut Random| mesh.positions[random.below(mesh.positions.len())];
+    let vertex = pick(random);
+    let inside = offset + random.in_cube(0.4);
+    match class {
+        "at a vertex" => Ray::new(inside, vertex - inside),
+        "at an edge" => {
+            let [a, b, _] = mesh.corners(random.below(mesh.triangles.len()));
+            Ray::new(inside, a + random.unit() * (b - a) - inside)
+        }
+        "along an axis through a vertex" => {
+            let axis = random.below(3);
+            let mut direction = DVec3::ZERO;
+            for k in 0..3 {
+                let sign = if random.unit() < 0.5 { -1.0 } else { 1.0 };
+                direction[k] = if k == axis { sign } else { sign * 0.0 };
+            }
+            let mut origin = vertex;
+            origin[axis] -= 8.0 * direction[axis];
+            Ray::new(origin, direction)
+        }
+        "vertex to vertex" => Ray::new(vertex, pick(random) - vertex),
+        "in an axis plane through a vertex" => {
+            let mut direction = random.direction();
+            direction[random.below(3)] = 0.0;
+            Ray::new(vertex - 4.0 * direction, direction)
+        }
+        "from the surface" => {
+            let [a, b, c] = mesh.corners(random.below(mesh.triangles.len()));
+            let w = random.weights();
+            Ray::new(w.x * a + w.y * b + w.z * c, random.direction())
+        }
+        "from far away" => {
+            let origin = offset + 10.0_f64.powf(random.between(2.0, 12.0)) * random.direction();
+            Ray::new(origin, vertex - origin)
+        }
+        _ => Ray::new(offset + random.in_cube(3.0), random.direction()),
+    }
+}
+
+fn assert_agreement(scene: &Scene, offset: DVec3, rays: usize) {
+    let oracle = LinearScan::new(scene);
+    let index = ObvhsBvh2::build(scene);
+    for class in CLASSES {
+        let mut random = Random::new(11);
+        let mut hits = 0;
+        for _ in 0..rays {
+            let ray = aimed(class, &scene.mesh, offset, &mut random);
+            let wanted = oracle.closest_hit(&ray, Interval::POSITIVE);
+            let got = index.closest_hit(&ray, Interval::POSITIVE);
+            let key = |hit: Option<lancer_core::intersector::Hit>| {
+                hit.map(|hit| (hit.t.to_bits(), hit.primitive))
+            };
+            assert_eq!(key(got), key(wanted), "{class} at {offset}: {ray:?}");
+            let Some(hit) = wanted else { continue };
+            hits += 1;
+            // An interval that ends around the hit: occlusion and closest hit must agree with it.
+            for max in [hit.t, hit.t.next_up(), 0.5 * hit.t, 2.0 * hit.t] {
+                let range = Interval::up_to(max);
+                let wanted = oracle.closest_hit(&ray, range).is_some();
+                assert_eq!(index.occluded(&ray, range), wanted, "{class} up to {max}: {ray:?}");
+                assert_eq!(wanted, max > hit.t);
+            }
+        }
+        assert!(hits * 10 > rays, "{class} at {offset}: {hits} hits test too little");
+    }
+}
+
+#[test]
+fn on_an_icosphere_at_three_offsets() {
+    for offset in OFFSETS {
+        assert_agreement(&scene_of(moved(&icosphere(2), offset)), offset, 4_000);
+    }
+}
+
+/// Sixty-four touching cubes: every inner face is there twice, so ties decide.
+#[test]
+fn on_doubled_faces() {
+    let mut mesh = Mesh::default();
+    for k in 0..64 {
+        let cell = DVec3::new(f64::from(k % 4), f64::from(k / 4 % 4), f64::from(k / 16)) - 1.5;
+        mesh.append(&moved(&cube(), 2.0 * cell), glam::DAffine3::from_scale(DVec3::splat(0.25)), 0);
+    }
+    assert_agreement(&scene_of(mesh), DVec3::ZERO, 2_000);
+}
+
+#[test]
+fn on_spheres_among_triangles() {
+    let mut random = Random::new(17);
+    let mut scene = scene_of(icosphere(1));
+    scene.spheres = (0..300)
+        .map(|_| SphereObject {
+            shape: Sphere { center: random.in_cube(1.5), radius: random.between(0.01, 0.3) },
+            material: MaterialId(0),
+        })
+        .collect();
+    // The last two coincide: the smaller id must win.
+    let last = *scene.spheres.last().unwrap();
+    scene.spheres.push(last);
+    assert_agreement(&scene, DVec3::ZERO, 4_000);
+}
+
+#[test]
+#[ignore = "soak: 10^5 rays per class; cargo test --release -p lancer-tests -- --ignored"]
+fn soak_on_an_icosphere() {
+    for offset in OFFSETS {
+        assert_agreement(&scene_of(moved(&icosphere(4), offset)), offset, 100_000);
+    }
+}
+
+/// Sets on which builders recurse for ever or divide by zero.
+#[test]
+fn on_degenerate_sets() {
+    let triangle = |a: DVec3, b: DVec3, c: DVec3| {
+        let mut mesh = Mesh { positions: vec![a, b, c], ..Mesh::default() };
+        mesh.push_face(MaterialId(0), &[[0, 1, 2]]);
+        mesh
+    };
+    let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
+    let mut identical = triangle(x, y, z);
+    for _ in 0..9_999 {
+        identical.push_face(MaterialId(0), &[[0, 1, 2]]);
+    }
+    let mut points = triangle(x, x, x);
+    for _ in 0..999 {
+        points.push_face(MaterialId(0), &[[0, 0, 0]]);
+    }
+    let mut uneven = triangle(-1e6 * x, 1e6 * y, 1e6 * x);
+    for k in 0..5_000 {
+        let corner = DVec3::new(f64::from(k % 71), 0.5 * f64::from(k / 71), 0.0);
+        let first = uneven.positions.len() as u32;
+        uneven.positions.extend([corner, corner + 1e-3 * x, corner + 1e-3 * y]);
+        uneven.push_face(MaterialId(0), &[[first, first + 1, first + 2]]);
+    }
+    for mesh in [Mesh::default(), triangle(x, y, z), identical, points, uneven] {
+        let scene = scene_of(mesh);
+        let (oracle, index) = (LinearScan::new(&scene), ObvhsBvh2::build(&scene));
+        let mut random = Random::new(23);
+        for _ in 0..200 {
+            let origin = random.in_cube(3.0);
+            let target = match scene.mesh.positions.len() {
+                0 => random.in_cube(1.0),
+                count => scene.mesh.positions[random.below(count)],
+            };
+            let ray = Ray::new(origin, target + 1e-4 * random.in_cube(1.0) - origin);
+            assert_eq!(
+                index.closest_hit(&ray, Interval::POSITIVE),
+                oracle.closest_hit(&ray, Interval::POSITIVE)
+            );
+        }
+    }
+}
+
+/// A ray that is no ray meets nothing, and nothing panics.
+#[test]
+fn invalid_rays_meet_nothing() {
+    let scene = scene_of(icosphere(2));
+    let (oracle, index) = (LinearScan::new(&scene), ObvhsBvh2::build(&scene));
+    let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+    let mut rays = vec![Ray::new(DVec3::ZERO, DVec3::ZERO), Ray::new(DVec3::ZERO, -DVec3::ZERO)];
+    for value in bad {
+        for axis in 0..3 {
+            let (mut origin, mut direction) = (DVec3::splat(0.1), DVec3::X);
+            origin[axis] = value;
+            rays.push(Ray::new(origin, DVec3::X));
+            direction[axis] = value;
+            rays.push(Ray::new(DVec3::splat(0.1), direction));
+        }
+    }
+    for ray in rays {
+        assert_eq!(oracle.closest_hit(&ray, Interval::POSITIVE), None, "{ray:?}");
+        assert_eq!(index.closest_hit(&ray, Interval::POSITIVE), None, "{ray:?}");
+        assert!(!index.occluded(&ray, Interval::POSITIVE));
+    }
+}

@@ -1,0 +1,76 @@
+//! The same bits for any number of threads, any tile size and any run.
+
+use std::sync::atomic::AtomicBool;
+
+use glam::DVec3;
+use lancer_accel::ObvhsBvh2;
+use lancer_core::Rgb;
+use lancer_core::generate::{icosphere, sphere_flake};
+use lancer_core::image::ImageSize;
+use lancer_core::render::{Cancelled, Control, Rendering, render_pixels};
+use lancer_core::sampling::{Pattern, PixelSampling};
+use lancer_core::scene::{Material, MaterialId, PointLight, Scene};
+use lancer_core::world::World;
+use lancer_whitted::{RayCounts, Settings, Whitted};
+
+use crate::meshes::scene_of;
+
+fn scene() -> Scene {
+    let mut scene = scene_of(icosphere(1));
+    scene.camera.eye = DVec3::new(1.0, 2.0, 5.0);
+    scene.spheres = sphere_flake(2, MaterialId(1));
+    scene.materials.push(Material {
+        k_s: Rgb::splat(0.4),
+        k_t: Rgb::splat(0.5),
+        refractive_index: 1.5,
+        ..Material::matte(Rgb::splat(0.2))
+    });
+    scene.materials[0].k_t = Rgb::splat(0.8);
+    scene.lights = vec![PointLight { position: DVec3::splat(4.0), intensity: Rgb::splat(30.0) }];
+    scene.background = Rgb::splat(0.3);
+    scene
+}
+
+fn render(threads: usize, tile: u32, pattern: Pattern) -> Rendering<RayCounts> {
+    let scene = scene();
+    let index = ObvhsBvh2::build(&scene);
+    let method = Whitted::new(World { scene: &scene, index: &index }, Settings::default());
+    let size = ImageSize::new(61, 47);
+    let rays = scene.camera.primary_rays(size);
+    let sampling = PixelSampling { pattern, samples: 4, seed: 9 };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let control = Control { tile, ..Control::default() };
+    pool.install(|| {
+        render_pixels(size, sampling, control, |film, counts: &mut RayCounts| {
+            method.trace(&rays.through(film.x, film.y), counts)
+        })
+    })
+    .unwrap()
+}
+
+#[test]
+fn pictures_do_not_depend_on_threads_or_tiles() {
+    for pattern in [Pattern::Regular, Pattern::Jittered, Pattern::Owen] {
+        let one = render(1, 16, pattern);
+        assert!(
+            one.counts.refracted > 1000 && one.counts.shadow > 1000,
+            "the test traces something"
+        );
+        for threads in [2, 3, 7] {
+            assert!(render(threads, 16, pattern) == one, "{threads} threads, {pattern:?}");
+        }
+        for tile in [1, 8, 17, 64] {
+            assert!(render(2, tile, pattern) == one, "tiles of {tile}, {pattern:?}");
+        }
+    }
+}
+
+#[test]
+fn a_cancelled_rendering_is_no_picture() {
+    let cancelled = AtomicBool::new(true);
+    let control = Control { cancelled: &cancelled, ..Control::default() };
+    let size = ImageSize::new(8, 8);
+    let result =
+        render_pixels(size, PixelSampling::CENTER, control, |_, _: &mut RayCounts| Rgb::ONE);
+    assert_eq!(result, Err(Cancelled));
+}

@@ -1,0 +1,251 @@
+//! Chapter 1 against sums that can be written down.
+
+use glam::DVec3;
+use lancer_core::Rgb;
+use lancer_core::geometry::{Ray, Sphere};
+use lancer_core::illumination::{Reflectance, ambient, attenuation, local};
+use lancer_core::intersector::LinearScan;
+use lancer_core::scene::{Material, MaterialId, Mesh, PointLight, Scene, SphereObject};
+use lancer_core::world::World;
+use lancer_whitted::{Appel, AtLimit, RayCounts, RayEnd, RayTree, Settings, Whitted, recursion};
+
+use crate::meshes::scene_of;
+
+const UNLIMITED: Settings = Settings { max_depth: 5, min_weight: 0.0, at_limit: AtLimit::Black };
+
+fn trace(scene: &Scene, settings: Settings, ray: Ray) -> (Rgb, RayCounts) {
+    let oracle = LinearScan::new(scene);
+    let mut counts = RayCounts::default();
+    let method = Whitted::new(World { scene, index: &oracle }, settings);
+    let radiance = method.trace(&ray, &mut counts);
+    (radiance, counts)
+}
+
+/// A large square at height y facing `up`.
+fn plate(scene: &mut Scene, y: f64, up: f64, material: u32) {
+    let first = scene.mesh.positions.len() as u32;
+    for (x, z) in [(-1e3, -1e3), (-1e3, 1e3), (1e3, 1e3), (1e3, -1e3)] {
+        scene.mesh.positions.push(DVec3::new(x, y, z * up));
+    }
+    scene.mesh.push_face(
+        MaterialId(material),
+        &[[first, first + 1, first + 2], [first, first + 2, first + 3]],
+    );
+}
+
+/// eq:local, eq:attenuation and eq:ambient, by hand.
+#[test]
+fn local_terms_by_hand() {
+    assert_eq!(attenuation(true, 2.0), 0.25);
+    assert_eq!(attenuation(false, 2.0), 0.0);
+    let grey = Rgb::splat;
+    assert_eq!(ambient(Rgb::new(0.5, 0.25, 1.0), grey(0.2)), Rgb::new(0.1, 0.05, 0.2));
+
+    let n = DVec3::Y;
+    let to_light = DVec3::new(0.6, 0.8, 0.0);
+    let mirror = DVec3::new(-0.6, 0.8, 0.0);
+    let reflectance =
+        Reflectance { diffuse: Rgb::new(0.5, 0.25, 0.0), specular: grey(0.5), shininess: 10.0 };
+    // At full strength in the mirror direction: I g (ρ_d 0.8 + ρ_s).
+    let full = local(grey(8.0), 0.25, &reflectance, n, to_light, mirror);
+    assert!((full - Rgb::new(1.8, 1.4, 1.0)).abs().max_element() < 1e-15, "{full}");
+    // At 60 degrees off it: (1/2)^10.
+    let eye =
+        DVec3::new(-0.6 * 0.5 - 0.8 * 0.75_f64.sqrt(), 0.8 * 0.5 - 0.6 * 0.75_f64.sqrt(), 0.0);
+    let dim = local(grey(8.0), 0.25, &reflectance, n, to_light, eye);
+    assert!((dim.z - 2.0 * 0.5 / 1024.0).abs() < 1e-15, "{dim}");
+    // Opposite the mirror direction an even power must not light anything: only ρ_d is left.
+    let behind = local(grey(8.0), 0.25, &reflectance, n, to_light, -mirror);
+    assert!((behind - Rgb::new(0.8, 0.4, 0.0)).abs().max_element() < 1e-15, "{behind}");
+    // A light below the horizon.
+    assert_eq!(local(grey(8.0), 0.25, &reflectance, n, -to_light, mirror), Rgb::ZERO);
+}
+
+#[test]
+fn recursion_by_hand() {
+    let got = recursion(
+        Rgb::splat(1.0),
+        Rgb::new(0.5, 0.25, 0.0),
+        Rgb::splat(2.0),
+        Rgb::splat(0.1),
+        Rgb::splat(10.0),
+    );
+    assert_eq!(got, Rgb::new(3.0, 2.5, 2.0));
+}
+
+/// algo:appel on a floor under a light: I / d² ρ_d cos, and 0 in the shadow of a sphere that reaches
+/// from h = 4 over a sphere of radius 1 at h = 2 to 2.3094 on the floor.
+#[test]
+fn appel_lights_and_shades_a_floor() {
+    let mut scene = scene_of(Mesh::default());
+    plate(&mut scene, 0.0, 1.0, 0);
+    scene.lights.push(PointLight { position: DVec3::Y * 4.0, intensity: Rgb::splat(32.0) });
+    let shape = Sphere { center: DVec3::Y * 2.0, radius: 1.0 };
+    scene.spheres.push(SphereObject { shape, material: MaterialId(0) });
+    scene.ambient = Rgb::splat(0.25);
+    let oracle = LinearScan::new(&scene);
+    let appel = Appel::new(World { scene: &scene, index: &oracle });
+    let floor = |x: f64| {
+        let eye = DVec3::new(x, 0.5, 0.0);
+        appel.trace(&Ray::new(eye, DVec3::NEG_Y), &mut ()).x
+    };
+    let ambient = 0.5 * 0.25;
+    // At x = 3 the light is at distance 5, under cos = 4/5.
+    assert!((floor(3.0) - (ambient + 32.0 / 25.0 * 0.5 * 0.8)).abs() < 1e-14);
+    let edge = 2.30940107675850;
+    assert_eq!(floor(edge - 1e-9), ambient);
+    assert!(floor(edge + 1e-9) > 2.0 * ambient);
+    // No light reaches a surface from behind: the ray from below sees the floor's dark side.
+    let below = appel.trace(&Ray::new(DVec3::new(3.0, -1.0, 0.0), DVec3::Y), &mut ());
+    assert_eq!(below.x, ambient);
+}
+
+/// The interior of a diffuse sphere of ρ = ½ lit from its centre: I / r² ρ_d everywhere.
+#[test]
+fn direct_light_in_a_sphere() {
+    let mut scene = scene_of(Mesh::default());
+    let shape = Sphere { center: DVec3::splat(2.0), radius: 1.0 };
+    scene.spheres.push(SphereObject { shape, material: MaterialId(0) });
+    scene.lights.push(PointLight { position: shape.center, intensity: Rgb::ONE });
+    for direction in [DVec3::X, DVec3::new(2.0, 3.0, -6.0) / 7.0] {
+        let (radiance, _) = trace(&scene, UNLIMITED, Ray::new(DVec3::splat(2.1), direction));
+        assert!((radiance - 0.5).abs().max_element() < 1e-14, "{radiance}");
+    }
+}
+
+/// eq:recursion between two parallel mirrors that emit 1: the sum of k_s^m, and what is left of it
+/// beyond Max_Prof follows the choice of the colour there.
+#[test]
+fn parallel_mirrors_sum_a_geometric_series() {
+    let mut scene = scene_of(Mesh::default());
+    plate(&mut scene, 0.0, 1.0, 0);
+    plate(&mut scene, 1.0, -1.0, 0);
+    scene.materials[0] =
+        Material { k_s: Rgb::splat(0.5), emission: Rgb::ONE, ..Material::matte(Rgb::ZERO) };
+    scene.ambient = Rgb::splat(2.0);
+    scene.background = Rgb::splat(3.0);
+    let ray = Ray::new(DVec3::new(0.0, 0.5, 0.0), DVec3::new(0.6, 0.8, 0.0));
+    for max_depth in [0, 1, 2, 5, 12] {
+        let series = 2.0 - 0.5_f64.powi(max_depth);
+        let rest = 0.5_f64.powi(max_depth + 1);
+        for (at_limit, color) in
+            [(AtLimit::Black, 0.0), (AtLimit::Ambient, 2.0), (AtLimit::Background, 3.0)]
+        {
+            let settings = Settings { max_depth: max_depth as u32, min_weight: 0.0, at_limit };
+            let (radiance, counts) = trace(&scene, settings, ray);
+            assert!(
+                (radiance.x - (series + rest * color)).abs() < 1e-14,
+                "{max_depth} {at_limit:?}"
+            );
+            assert_eq!((counts.primary, counts.mirror), (1, max_depth as u64));
+        }
+    }
+    // A minimum weight of 1/8 lets through the weights 1, 1/2, 1/4 and 1/8.
+    let settings = Settings { max_depth: 100, min_weight: 0.125, at_limit: AtLimit::Black };
+    let (radiance, counts) = trace(&scene, settings, ray);
+    assert_eq!((radiance.x, counts.total()), (1.875, 4));
+}
+
+/// fig:ray-tree: glass that reflects as well splits every ray in two; five bounces make 63 rays.
+#[test]
+fn a_full_binary_tree_of_depth_five_has_63_rays() {
+    let mut scene = scene_of(Mesh::default());
+    for y in -40..40 {
+        plate(&mut scene, f64::from(y), 1.0, 0);
+    }
+    scene.materials[0] = Material {
+        k_s: Rgb::splat(0.5),
+        k_t: Rgb::splat(0.5),
+        refractive_index: 1.0,
+        ..Material::matte(Rgb::ZERO)
+    };
+    let ray = Ray::new(DVec3::new(0.0, 0.5, 0.0), DVec3::new(0.6, -0.8, 0.0));
+    let (_, counts) = trace(&scene, UNLIMITED, ray);
+    assert_eq!(counts.total(), 63);
+    let oracle = LinearScan::new(&scene);
+    let mut tree = RayTree::default();
+    Whitted::new(World { scene: &scene, index: &oracle }, UNLIMITED).trace(&ray, &mut tree);
+    assert_eq!(tree.traced(), 63);
+    assert_eq!(tree.nodes.len(), 127, "and 64 that the depth limit cuts");
+    for node in &tree.nodes {
+        let parent = node.parent.map(|parent| tree.nodes[parent].call);
+        assert_eq!(node.call.depth, parent.map_or(0, |call| call.depth + 1));
+        assert_eq!(node.call.weight, 0.5_f64.powi(node.call.depth as i32));
+        assert_eq!(matches!(node.end, RayEnd::Cut), node.call.depth == 6);
+    }
+}
+
+/// Inside glass beyond the critical angle nothing passes, and the mirror ray gets k_s + k_t.
+#[test]
+fn total_reflection_gives_its_share_to_the_mirror() {
+    let mut scene = scene_of(Mesh::default());
+    plate(&mut scene, 0.0, 1.0, 0);
+    plate(&mut scene, -1.0, 1.0, 1);
+    scene.materials = vec![
+        Material {
+            k_s: Rgb::splat(0.25),
+            k_t: Rgb::splat(0.5),
+            refractive_index: 1.5,
+            ..Material::matte(Rgb::ZERO)
+        },
+        Material { emission: Rgb::ONE, ..Material::matte(Rgb::ZERO) },
+    ];
+    scene.background = Rgb::splat(10.0);
+    let inside = DVec3::new(0.0, -0.5, 0.0);
+    let steep = Ray::new(inside, DVec3::new(0.6, 0.8, 0.0));
+    let flat = Ray::new(inside, DVec3::new(0.8, 0.6, 0.0));
+    // sin θ = 0.6 < 2/3 < 0.8: one side passes to the background, the other sees the floor only.
+    let (passes, _) = trace(&scene, UNLIMITED, steep);
+    assert!((passes.x - (0.25 * 1.0 + 0.5 * 10.0)).abs() < 1e-14, "{passes}");
+    let (turned, counts) = trace(&scene, UNLIMITED, flat);
+    assert!((turned.x - 0.75).abs() < 1e-14, "{turned}");
+    assert_eq!((counts.mirror, counts.refracted), (1, 0));
+}
+
+/// A ball of index 1 and k_t = 1 is not there.
+#[test]
+fn glass_of_index_one_is_invisible() {
+    let mut scene = scene_of(Mesh::default());
+    scene.background = Rgb::new(0.1, 0.2, 0.3);
+    scene.materials[0] = Material { k_t: Rgb::ONE, ..Material::matte(Rgb::ZERO) };
+    let shape = Sphere { center: DVec3::Z * 4.0, radius: 1.0 };
+    scene.spheres.push(SphereObject { shape, material: MaterialId(0) });
+    let ray = Ray::new(DVec3::ZERO, DVec3::new(0.1, 0.1, 1.0).normalize());
+    let (radiance, counts) = trace(&scene, UNLIMITED, ray);
+    assert_eq!(radiance, scene.background);
+    assert_eq!(counts.refracted, 2);
+}
+
+/// An area light counts as a point of the same power with the same cosine: from far away both agree,
+/// E = L A cos cos' / d², and nothing shines backwards.
+#[test]
+fn an_area_light_is_a_point_at_its_centroid() {
+    let mut scene = scene_of(Mesh::default());
+    plate(&mut scene, 0.0, 1.0, 0);
+    scene.materials = vec![
+        Material::matte(Rgb::ONE),
+        Material { emission: Rgb::splat(100.0), ..Material::matte(Rgb::ZERO) },
+    ];
+    // A rectangle of area 0.5 at height 10 that faces down, as one face of two triangles.
+    let first = scene.mesh.positions.len() as u32;
+    for (x, z) in [(-0.5, -0.25), (0.5, -0.25), (0.5, 0.25), (-0.5, 0.25)] {
+        scene.mesh.positions.push(DVec3::new(x, 10.0, z));
+    }
+    scene
+        .mesh
+        .push_face(MaterialId(1), &[[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+    let sources = scene.point_sources();
+    assert_eq!(sources.len(), 1);
+    assert!((sources[0].position - DVec3::Y * 10.0).length() < 1e-12);
+
+    let look = |x: f64| trace(&scene, UNLIMITED, Ray::new(DVec3::new(x, 0.5, 0.0), DVec3::NEG_Y));
+    let (below, counts) = look(0.0);
+    assert!((below.x - 100.0 * 0.5 / 100.0).abs() < 1e-12, "{below}");
+    assert_eq!(counts.shadow, 1);
+    let (aside, _) = look(10.0);
+    assert!((aside.x - 50.0 * 0.5 * 0.5 / 200.0).abs() < 1e-12, "{aside}");
+    // Above the light its own face stands in the way of nothing: it does not shine there at all.
+    plate(&mut scene, 20.0, -1.0, 0);
+    let ceiling = trace(&scene, UNLIMITED, Ray::new(DVec3::new(0.0, 19.0, 0.0), DVec3::Y));
+    assert_eq!(ceiling.0, Rgb::ZERO);
+}
