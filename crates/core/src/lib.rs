@@ -11,6 +11,7 @@
 
 pub mod geometry;
 pub mod image;
+pub mod metric;
 pub mod scene;
 
 /// Linear RGB: a radiance, an intensity or a reflectance, one `f64` per channel.

@@ -87,7 +87,7 @@ fn grey_alpha_and_16_bit_pictures_are_read() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("a.png");
     // Level 32768 of 65535 and level 188 of 255 are linear 0.2140482… and 0.5028864… (mpmath).
-    let (half, high) = (0.214_048_2_f32, 0.502_886_46_f32);
+    let (half, high) = (0.214_048_2_f32, 0.502_886_5_f32);
     let pictures: [(DynamicImage, [f32; 3]); 4] = [
         (ImageBuffer::from_pixel(2, 3, Luma([188_u8])).into(), [high; 3]),
         (ImageBuffer::from_pixel(2, 3, LumaA([188_u8, 7])).into(), [high; 3]),
