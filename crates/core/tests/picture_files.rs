@@ -323,3 +323,21 @@ fn truncated_and_damaged_pictures_give_errors_and_no_panics() {
         }
     }
 }
+
+#[test]
+fn a_header_that_promises_too_much_is_refused() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("a.exr");
+    save(&path, &picture(), 0.0).unwrap();
+    let mut bytes = fs::read(&path).unwrap();
+    // The attribute's name and type, its length, then the corners x, y of a box.
+    let attribute = b"displayWindow\0box2i\0\x10\0\0\0";
+    let at = bytes.windows(attribute.len()).position(|bytes| bytes == attribute).unwrap();
+    let far_corner = at + attribute.len() + 8;
+    for (x, y) in [(30_000_i32, 30_000_i32), (i32::MAX / 2, 100)] {
+        bytes[far_corner..][..4].copy_from_slice(&x.to_le_bytes());
+        bytes[far_corner + 4..][..4].copy_from_slice(&y.to_le_bytes());
+        fs::write(&path, &bytes).unwrap();
+        assert_tells(&load(&path).unwrap_err(), &path, "`");
+    }
+}

@@ -23,6 +23,17 @@ mod tests {
     }
 
     #[test]
+    fn values_on_both_sides_of_the_knee() {
+        // By mpmath; the other part of the curve differs in the fifth decimal.
+        for (linear, display) in [(0.0031, 0.040_052), (0.0032, 0.041_323_358_627)] {
+            assert!((encode(linear) - display).abs() < 1e-11, "{linear}");
+        }
+        for (display, linear) in [(0.04, 0.003_095_975_232), (0.041, 0.003_174_278_709)] {
+            assert!((decode(display) - linear).abs() < 1e-11, "{display}");
+        }
+    }
+
+    #[test]
     fn half_of_the_display_range_is_a_fifth_of_the_light() {
         // (0.555 / 1.055)^2.4 and 1.055 / 2^(1/2.4) - 0.055, to 10 digits by mpmath.
         assert!((decode(0.5) - 0.214_041_140_5).abs() < 1e-10);
