@@ -56,8 +56,8 @@ pub enum ImageError {
         /// What the operating system says.
         source: io::Error,
     },
-    /// The bytes are no such picture.
-    #[error("`{}` is no whole picture of the format that its name tells; make it anew", path.display())]
+    /// The bytes are no whole picture of the format, or one that takes more than 512 MiB.
+    #[error("cannot decode `{}`: it is damaged, of another format than its name tells, or too large (512 MiB); make it anew", path.display())]
     Decode {
         /// The picture file.
         path: PathBuf,
