@@ -17,6 +17,7 @@ pub mod intersector;
 pub mod optics;
 pub mod render;
 pub mod sampling;
+pub mod metric;
 pub mod scene;
 pub mod world;
 

@@ -1,0 +1,179 @@
+use std::fs;
+use std::io::{self, Cursor, ErrorKind};
+use std::path::{Path, PathBuf};
+
+use ::image::{DynamicImage, ImageFormat, ImageReader, Rgb32FImage, RgbImage};
+use thiserror::Error;
+
+use super::{Image, ImageSize, SizeError, WriteError, srgb, write_atomically};
+
+/// Why a picture was not saved or loaded.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ImageError {
+    /// The name ends in neither `.png` nor `.exr`.
+    #[error("what kind of picture is `{}`? Its name must end in .png (sRGB) or .exr (linear)", path.display())]
+    UnknownExtension {
+        /// The picture file.
+        path: PathBuf,
+    },
+    /// The exposure is infinite or NaN.
+    #[error("cannot write `{}` with an exposure of {exposure_ev}: give a number of stops such as -1.5", path.display())]
+    Exposure {
+        /// The picture file.
+        path: PathBuf,
+        /// The exposure asked for, in stops.
+        exposure_ev: f64,
+    },
+    /// The picture could not be put into its format.
+    #[error("cannot write `{}`: the picture does not fit its format", path.display())]
+    Encode {
+        /// The picture file.
+        path: PathBuf,
+        /// What the encoder says.
+        source: ::image::ImageError,
+    },
+    /// The file could not be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// There is no such file.
+    #[error("there is no picture `{}`; check its name and the current folder", path.display())]
+    Missing {
+        /// The picture file.
+        path: PathBuf,
+    },
+    /// A folder has that name.
+    #[error("cannot read `{}`: it is a folder; name a picture in it", path.display())]
+    IsFolder {
+        /// The picture file.
+        path: PathBuf,
+    },
+    /// The operating system refused to read the file.
+    #[error("cannot read `{}`", path.display())]
+    Read {
+        /// The picture file.
+        path: PathBuf,
+        /// What the operating system says.
+        source: io::Error,
+    },
+    /// The bytes are no whole picture of the format, or one that takes more than 512 MiB.
+    #[error("cannot decode `{}`: it is damaged, of another format than its name tells, or too large (512 MiB); make it anew", path.display())]
+    Decode {
+        /// The picture file.
+        path: PathBuf,
+        /// What the decoder says.
+        source: ::image::ImageError,
+    },
+    /// The file holds a picture of a size that we refuse.
+    #[error("cannot read `{}`", path.display())]
+    Size {
+        /// The picture file.
+        path: PathBuf,
+        /// What is wrong with its size.
+        source: SizeError,
+    },
+}
+
+/// Saves a picture in the format that the file's name tells, in either case: `.png`, 8-bit sRGB
+/// under this exposure as [`Image::to_srgb8`] gives it, or `.exr`, the linear `f32` channels bit
+/// for bit. An EXR file holds radiances to measure, not a display's picture: the exposure is *not*
+/// applied to it, just as other renderers do.
+///
+/// `exposure_ev` is in stops, 0 for none. An old file of that name is replaced whole or not at
+/// all, see [`write_atomically`].
+///
+/// # Errors
+/// If the extension is unknown, the exposure not finite, or the file cannot be written; every
+/// message names the file.
+pub fn save(path: impl AsRef<Path>, image: &Image, exposure_ev: f64) -> Result<(), ImageError> {
+    let path = path.as_ref();
+    let format = format_of(path)?;
+    if !exposure_ev.is_finite() {
+        return Err(ImageError::Exposure { path: path.into(), exposure_ev });
+    }
+    let bytes = encode(image, format, exposure_ev)
+        .map_err(|source| ImageError::Encode { path: path.into(), source })?;
+    Ok(write_atomically(path, &bytes)?)
+}
+
+/// Loads a picture in the format that the file's name tells, in either case: `.png`, of 8 or 16
+/// bits, colour or grey, taken as sRGB and decoded to linear, or `.exr`, taken as linear. Alpha is
+/// left out.
+///
+/// # Errors
+/// If the extension is unknown or the file cannot be read, is no whole picture of its format, or
+/// would take more than 512 MiB; every message names the file.
+pub fn load(path: impl AsRef<Path>) -> Result<Image, ImageError> {
+    let path = path.as_ref();
+    let format = format_of(path)?;
+    let bytes = fs::read(path).map_err(|source| {
+        let path = path.to_owned();
+        match source.kind() {
+            ErrorKind::NotFound | ErrorKind::NotADirectory => ImageError::Missing { path },
+            _ if path.is_dir() => ImageError::IsFolder { path },
+            _ => ImageError::Read { path, source },
+        }
+    })?;
+    let decoded = ImageReader::with_format(Cursor::new(bytes), format)
+        .decode()
+        .map_err(|source| ImageError::Decode { path: path.into(), source })?;
+    let size = ImageSize::checked(decoded.width().into(), decoded.height().into())
+        .map_err(|source| ImageError::Size { path: path.into(), source })?;
+    Ok(Image::from_pixels(size, linear_pixels(decoded)))
+}
+
+fn format_of(path: &Path) -> Result<ImageFormat, ImageError> {
+    match path.extension() {
+        Some(extension) if extension.eq_ignore_ascii_case("png") => Ok(ImageFormat::Png),
+        Some(extension) if extension.eq_ignore_ascii_case("exr") => Ok(ImageFormat::OpenExr),
+        _ => Err(ImageError::UnknownExtension { path: path.into() }),
+    }
+}
+
+fn encode(image: &Image, format: ImageFormat, ev: f64) -> Result<Vec<u8>, ::image::ImageError> {
+    let ImageSize { width, height } = image.size;
+    let picture = if format == ImageFormat::OpenExr {
+        Rgb32FImage::from_raw(width, height, image.pixels.as_flattened().to_vec()).map(Into::into)
+    } else {
+        RgbImage::from_raw(width, height, image.to_srgb8(ev).into_flattened()).map(Into::into)
+    };
+    let picture: DynamicImage = picture.expect("an Image has width × height pixels");
+    let mut bytes = Cursor::new(Vec::new());
+    picture.write_to(&mut bytes, format)?;
+    Ok(bytes.into_inner())
+}
+
+fn linear_pixels(decoded: DynamicImage) -> Vec<[f32; 3]> {
+    match decoded {
+        DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
+            decoded.into_rgb32f().pixels().map(|pixel| pixel.0).collect()
+        }
+        _ => {
+            // Exact for 8-bit levels too: v/255 = 257·v/65535.
+            let linear: Vec<f32> =
+                (0..=u16::MAX).map(|v| srgb::decode(f64::from(v) / 65535.0) as f32).collect();
+            let channel = |level: u16| linear[usize::from(level)];
+            decoded.into_rgb16().pixels().map(|pixel| pixel.0.map(channel)).collect()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_that_cannot_be_encoded_leaves_the_old_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let empty = Image::new(ImageSize { width: 0, height: 0 });
+        for name in ["old.png", "old.exr"] {
+            let path = folder.path().join(name);
+            fs::write(&path, "old").unwrap();
+            let error = save(&path, &empty, 0.0).unwrap_err();
+            assert!(matches!(error, ImageError::Encode { .. }), "{error:?}");
+            assert!(error.to_string().contains(name), "{error}");
+            assert_eq!(fs::read(&path).unwrap(), b"old");
+        }
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+}
