@@ -14,10 +14,10 @@ pub mod geometry;
 pub mod illumination;
 pub mod image;
 pub mod intersector;
+pub mod metric;
 pub mod optics;
 pub mod render;
 pub mod sampling;
-pub mod metric;
 pub mod scene;
 pub mod world;
 

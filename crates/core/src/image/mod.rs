@@ -43,6 +43,15 @@ impl Image {
         Self { size, pixels }
     }
 
+    /// Overwrites the rectangle of `size` whose first pixel is in column `x` of row `y`.
+    pub(crate) fn paste(&mut self, x: u32, y: u32, size: ImageSize, pixels: &[[f32; 3]]) {
+        let width = size.width as usize;
+        for (row, source) in pixels.chunks_exact(width).enumerate() {
+            let start = (y as usize + row) * self.size.width as usize + x as usize;
+            self.pixels[start..start + width].copy_from_slice(source);
+        }
+    }
+
     /// Width and height.
     pub fn size(&self) -> ImageSize {
         self.size
