@@ -59,7 +59,7 @@ fn aimed(class: &str, mesh: &Mesh, offset: DVec3, random: &mut Random) -> Ray {
             let origin = offset + 10.0_f64.powf(random.between(2.0, 12.0)) * random.direction();
             Ray::new(origin, vertex - origin)
         }
-        _ => Ray::new(offset + random.in_cube(3.0), random.direction()),
+        _ => Ray::new(offset + random.in_cube(1.5), random.direction()),
     }
 }
 

@@ -71,7 +71,8 @@ fn extreme_sizes_and_distances_are_met() {
     let sliver = [UNIT[0], UNIT[1], v(0.5, f64::EPSILON, 0.0)];
     assert_eq!(t(sliver, v(0.5, 0.25 * f64::EPSILON, 1.0), down), Some(1.0));
     let small = UNIT.map(|p| 1e-20 * p);
-    assert_eq!(t(small, v(2e-21, 2e-21, 1e-20), down), Some(1e-20));
+    let near = t(small, v(2e-21, 2e-21, 1e-20), down).unwrap();
+    assert!((near / 1e-20 - 1.0).abs() <= 4.0 * f64::EPSILON, "{near:e}");
     assert_eq!(t(UNIT, v(0.25, 0.25, 1e15), down), Some(1e15));
     let slow = v(0.0, 0.0, -f64::MIN_POSITIVE);
     assert_eq!(t(UNIT, v(0.25, 0.25, 1.0), slow), Some(1.0 / f64::MIN_POSITIVE));
@@ -128,7 +129,8 @@ fn interior_hits_are_accurate_to_a_few_ulps() {
     for _ in 0..100_000 {
         let mut point = |size| v(random.integer(size), random.integer(size), random.integer(size));
         let corners = [point(1 << 10) * 64.0, point(1 << 10) * 64.0, point(1 << 10) * 64.0];
-        let origin_offset = point(1 << 10);
+        // From about as far away as the triangle is large: nearer, its corners' depths cancel.
+        let origin_offset = point(1 << 10) * 32.0;
         let weights = [20.0, 27.0, 17.0];
         let target = (0..3).map(|k| corners[k] * (weights[k] / 64.0)).sum::<DVec3>();
         let n = (corners[1] - corners[0]).cross(corners[2] - corners[0]);

@@ -7,7 +7,7 @@ use lancer_core::geometry::{Interval, Ray, Sphere};
 use lancer_core::intersector::{Intersector, LinearScan};
 use lancer_core::scene::{MaterialId, Mesh, Scene, SphereObject};
 
-use crate::meshes::scene_of;
+use crate::meshes::{moeller_trumbore, scene_of};
 use crate::random::Random;
 
 fn one_triangle(corners: [DVec3; 3]) -> Scene {
@@ -70,15 +70,17 @@ fn no_self_hit_on_triangles_of_sixteen_decades() {
     assert_eq!(ours.0, 0, "self-hits in {left} rays");
 }
 
+/// Without the offset and the error bound nearly half of all rays meet the triangle they leave.
 #[test]
-fn an_epsilon_does_hit_itself() {
-    let naive = self_hits(200, 100, |scene, ray, direction| {
+fn a_plain_hit_point_does_hit_itself() {
+    let hits = std::cell::Cell::new(0);
+    self_hits(200, 100, |scene, ray, direction| {
         let hit = LinearScan::new(scene).closest_hit(&ray, Interval::POSITIVE)?;
-        let surface = scene.surface_at(&ray, &hit);
-        let side = surface.geometric_normal.dot(direction).signum();
-        Some(Ray::new(surface.position + 1e-4 * side * surface.geometric_normal, direction))
+        let out = Ray::new(scene.surface_at(&ray, &hit).position, direction);
+        hits.set(hits.get() + u32::from(moeller_trumbore(scene.mesh.corners(0), &out)));
+        None
     });
-    assert!(naive > 100, "a fixed epsilon of 1e-4 hits itself {naive} times in 20 000");
+    assert!(hits.get() > 1000, "only {} self-hits in 20 000", hits.get());
 }
 
 #[test]
@@ -115,8 +117,10 @@ fn no_self_hit_on_spheres() {
             // Inwards the ray must cross the sphere and meet the other side.
             let inwards = surface.spawn(-n);
             let across = oracle.closest_hit(&inwards, Interval::POSITIVE).map(|hit| hit.t / radius);
+            // A small sphere far from the origin is only as round as its coordinates resolve.
+            let resolved = 64.0 * f64::EPSILON * (center.length() + radius) / radius;
             assert!(
-                across.is_some_and(|t| (t - 2.0).abs() < 1e-6),
+                across.is_some_and(|t| (t - 2.0).abs() < resolved),
                 "{across:?}, {center} {radius}"
             );
         }
@@ -144,10 +148,9 @@ fn tilted_plane(offset: DVec3) -> Scene {
     scene_of(mesh)
 }
 
-/// Rays that leave the plane upwards and meet it again.
-fn plane_hits(distance: f64, leave: impl Fn(&Scene, &Ray, DVec3) -> (Ray, Option<u32>)) -> usize {
+/// Counts the rays leaving the plane upwards that `meets` something again.
+fn plane_hits(distance: f64, meets: impl Fn(&Scene, &Ray, DVec3) -> bool) -> usize {
     let scene = tilted_plane(DVec3::splat(distance));
-    let oracle = LinearScan::new(&scene);
     let n = (scene.mesh.positions[1] - scene.mesh.positions[0])
         .cross(scene.mesh.positions[17] - scene.mesh.positions[0])
         .normalize();
@@ -155,19 +158,17 @@ fn plane_hits(distance: f64, leave: impl Fn(&Scene, &Ray, DVec3) -> (Ray, Option
     let mut count = 0;
     for _ in 0..4_000 {
         let [a, b, c] = scene.mesh.corners(random.below(512));
-        let w = random.weights();
+        // Half of the points lie on a shared edge.
+        let w = if random.unit() < 0.5 { random.weights() } else { DVec3::new(0.25, 0.75, 0.0) };
         let target = w.x * a + w.y * b + w.z * c;
         let origin = target + random.direction() * 2.0;
         let ray = Ray::new(origin, target - origin);
         let mut up = random.direction();
         up *= up.dot(n).signum();
         // Upwards by more than the plane's own rounding.
-        if up.dot(n) < 1e-3 {
-            continue;
+        if up.dot(n) > 1e-3 {
+            count += usize::from(meets(&scene, &ray, up));
         }
-        let (out, skipped) = leave(&scene, &ray, up);
-        let again = oracle.closest_hit(&out, Interval::POSITIVE);
-        count += usize::from(again.is_some_and(|hit| Some(hit.primitive.0) != skipped));
     }
     count
 }
@@ -176,16 +177,23 @@ fn plane_hits(distance: f64, leave: impl Fn(&Scene, &Ray, DVec3) -> (Ray, Option
 fn no_ray_that_leaves_a_tessellated_plane_meets_it_again() {
     for distance in [0.0, 100.0, 1e4, 1e6] {
         let ours = plane_hits(distance, |scene, ray, up| {
-            let hit = LinearScan::new(scene).closest_hit(ray, Interval::POSITIVE).unwrap();
-            (scene.surface_at(ray, &hit).spawn(up), None)
+            let oracle = LinearScan::new(scene);
+            // An edge of the border may be missed: there is no neighbour.
+            oracle.closest_hit(ray, Interval::POSITIVE).is_some_and(|hit| {
+                let out = scene.surface_at(ray, &hit).spawn(up);
+                oracle.closest_hit(&out, Interval::POSITIVE).is_some()
+            })
         });
         assert_eq!(ours, 0, "at {distance}");
     }
     let skip_own = plane_hits(1e4, |scene, ray, up| {
-        let hit = LinearScan::new(scene).closest_hit(ray, Interval::POSITIVE).unwrap();
-        (Ray::new(scene.surface_at(ray, &hit).position, up), Some(hit.primitive.0))
+        LinearScan::new(scene).closest_hit(ray, Interval::POSITIVE).is_some_and(|hit| {
+            let out = Ray::new(scene.surface_at(ray, &hit).position, up);
+            let mut others = (0..512).filter(|&index| index != hit.primitive.0 as usize);
+            others.any(|index| moeller_trumbore(scene.mesh.corners(index), &out))
+        })
     });
-    assert!(skip_own > 20, "skipping the own primitive leaves {skip_own} self-hits in 4 000");
+    assert!(skip_own > 100, "skipping the own primitive leaves only {skip_own} self-hits in 4 000");
 }
 
 #[test]
@@ -211,6 +219,7 @@ fn nothing_passes_between_plates_a_millionth_apart() {
         let scene = scene_of(mesh);
         let oracle = LinearScan::new(&scene);
         let mut random = Random::new(41);
+        let mut tunnelled = 0;
         for _ in 0..100_000 {
             // From below onto the lower plate, then on from its upper side.
             let start =
@@ -222,7 +231,13 @@ fn nothing_passes_between_plates_a_millionth_apart() {
             let next = scene.surface_at(&ray, &hit).spawn(up.normalize());
             let second = oracle.closest_hit(&next, Interval::POSITIVE);
             assert!(second.is_some_and(|hit| hit.primitive.0 >= 2), "gap {gap:e}: {next:?}");
+            let epsilon = Ray::new(ray.at(hit.t) + 1e-4 * DVec3::Y, up);
+            tunnelled += usize::from(oracle.closest_hit(&epsilon, Interval::POSITIVE).is_none());
         }
+        assert!(
+            gap > 1e-4 || tunnelled == 100_000,
+            "an epsilon of 1e-4 jumps over the second plate"
+        );
     }
 }
 

@@ -7,7 +7,7 @@ use lancer_core::geometry::{Interval, Ray};
 use lancer_core::intersector::{Intersector, LinearScan};
 use lancer_core::scene::Mesh;
 
-use crate::meshes::{OFFSETS, Target, aimed_ray, closed_meshes, moved, scene_of};
+use crate::meshes::{OFFSETS, Target, aimed_ray, closed_meshes, moeller_trumbore, moved, scene_of};
 use crate::random::Random;
 
 /// Rays that leave a closed mesh from the inside without meeting it.
@@ -103,17 +103,6 @@ fn leaks_of(
             !(0..mesh.triangles.len()).any(|index| test(mesh.corners(index), &ray))
         })
         .count()
-}
-
-/// Möller, Trumbore 1997: neighbours compute different numbers for their common edge.
-fn moeller_trumbore([a, b, c]: [DVec3; 3], ray: &Ray) -> bool {
-    let (e1, e2, s) = (b - a, c - a, ray.origin - a);
-    let p = ray.direction.cross(e2);
-    let inverse = 1.0 / e1.dot(p);
-    let u = s.dot(p) * inverse;
-    let q = s.cross(e1);
-    let v = ray.direction.dot(q) * inverse;
-    u >= 0.0 && v >= 0.0 && u + v <= 1.0 && e2.dot(q) * inverse > 0.0
 }
 
 /// The watertight test with its edge functions rounded once instead of twice.
