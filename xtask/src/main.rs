@@ -1,2 +1,50 @@
-//! xtask
-fn main() {}
+//! `cargo xtask`: the course's command line. It parses, calls and reports; the algorithms are in
+//! `crates/`, the figures in `chapters/`.
+
+mod compare;
+mod eq;
+mod figures;
+mod names;
+mod progress;
+mod render;
+mod repository;
+mod scene;
+mod tidy;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// The ray-tracing course one can run.
+#[derive(Parser)]
+#[command(name = "cargo xtask", version)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Figures(figures::Args),
+    Render(render::Args),
+    Compare(compare::Args),
+    Eq(eq::Args),
+    Tidy,
+}
+
+fn main() -> ExitCode {
+    let result = match Cli::parse().command {
+        Command::Figures(args) => figures::run(&args),
+        Command::Render(args) => render::run(&args),
+        Command::Compare(args) => compare::run(&args),
+        Command::Eq(args) => eq::run(&args),
+        Command::Tidy => tidy::run(),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}

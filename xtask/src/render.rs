@@ -1,0 +1,230 @@
+use std::path::PathBuf;
+use std::str::FromStr;
+use std::time::Instant;
+
+use anyhow::{Context, Result, bail, ensure};
+use glam::{DVec2, DVec3};
+use lancer_accel::ObvhsBvh2;
+use lancer_core::Rgb;
+use lancer_core::image::{ImageSize, check_target, save};
+use lancer_core::intersector::{Intersector, LinearScan};
+use lancer_core::render::{Control, Rendering, render_pixels};
+use lancer_core::sampling::{Pattern, PixelSampling};
+use lancer_core::scene::{PointLight, Scene};
+use lancer_core::world::World;
+use lancer_whitted::{Appel, RayCounts, Settings, Whitted};
+
+use crate::names::choose;
+use crate::{progress, scene};
+
+const METHODS: [&str; 2] = ["appel", "whitted"];
+const INDEXES: [&str; 2] = ["linear", "obvhs-bvh2"];
+
+/// Renders a scene by any method of the course.
+///
+/// SCENE is a .toml file, an .obj file (framed automatically, and lit by a lamp beside the camera if
+/// it has none), or a scene of the course: whitted, room, flake[:LEVEL], tetrahedra[:LEVEL],
+/// gears[:LEVEL].
+#[derive(clap::Args)]
+#[command(after_help = "Examples:
+  cargo xtask render whitted --out whitted.png
+  cargo xtask render bunny.obj --method appel --size 1024x1024 --spp 16 --out bunny.png
+  cargo xtask render room --depth 8 --eye 0.3,1.6,4 --exposure 0.5 --out room.exr")]
+pub struct Args {
+    /// A .toml or .obj file, or a scene of the course
+    scene: String,
+    /// appel (visibility and shadows) or whitted (mirrors and glass as well)
+    #[arg(long, default_value = "whitted")]
+    method: String,
+    /// linear (every primitive for every ray) or obvhs-bvh2
+    #[arg(long, default_value = "obvhs-bvh2")]
+    index: String,
+    /// Pixels across and down
+    #[arg(long, default_value = "512x512", value_name = "WxH")]
+    size: ImageSize,
+    /// Samples per pixel: 1 is the pixel's centre, more are a scrambled Sobol sequence
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
+    spp: u32,
+    /// Largest number of bounces between the eye and a surface (whitted)
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    depth: u32,
+    /// Picks the sample positions
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Threads; 0 takes all processors. The picture does not depend on it
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
+    threads: u16,
+    /// Moves the eye
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    eye: Option<Numbers<3>>,
+    /// Moves the point in the middle of the picture
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    look_at: Option<Numbers<3>>,
+    /// Vertical opening angle in degrees
+    #[arg(long, value_name = "DEG")]
+    fov: Option<f64>,
+    /// A point light instead of the scene's own; may be given several times
+    #[arg(long, value_name = "X,Y,Z,INTENSITY", allow_hyphen_values = true)]
+    light: Vec<Numbers<4>>,
+    /// Brightens a PNG by this many stops; an EXR keeps the radiances
+    #[arg(long, default_value_t = 0.0, value_name = "EV", allow_hyphen_values = true)]
+    exposure: f64,
+    /// The picture: .png is sRGB, .exr is linear
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+/// Numbers separated by commas.
+#[derive(Clone, Copy)]
+struct Numbers<const N: usize>([f64; N]);
+
+impl<const N: usize> FromStr for Numbers<N> {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Vec<f64> = text
+            .split(',')
+            .map(|part| part.trim().parse().map_err(|_| format!("`{part}` is not a number")))
+            .collect::<Result<_, _>>()?;
+        if let Some(bad) = numbers.iter().find(|number| !number.is_finite()) {
+            return Err(format!("{bad} is not a finite number"));
+        }
+        let count = numbers.len();
+        <[f64; N]>::try_from(numbers)
+            .map(Self)
+            .map_err(|_| format!("{N} numbers separated by commas are wanted, {count} are given"))
+    }
+}
+
+pub fn run(args: &Args) -> Result<()> {
+    let method = METHODS[choose("method", &args.method, &METHODS)?];
+    let index = INDEXES[choose("index", &args.index, &INDEXES)?];
+    ensure!(args.exposure.is_finite(), "--exposure {} is not a finite number", args.exposure);
+    check_target(&args.out)?;
+
+    let start = Instant::now();
+    let loaded = scene::open(&args.scene)?;
+    for warning in &loaded.warnings {
+        eprintln!("warning: {warning}");
+    }
+    let mut scene = loaded.scene;
+    place(&mut scene, args)?;
+    let counts = loaded.counts;
+    println!(
+        "scene   {:7.3} s   {} triangles in {} faces, {} spheres, {} lights",
+        start.elapsed().as_secs_f64(),
+        counts.triangles,
+        counts.faces,
+        counts.spheres,
+        scene.point_sources().len(),
+    );
+
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(args.threads.into())
+        .build()
+        .context("cannot start the threads")?;
+    let rendering = pool.install(|| match index {
+        "linear" => trace(method, &scene, &LinearScan::new(&scene), args),
+        _ => {
+            let start = Instant::now();
+            let tree = ObvhsBvh2::build(&scene);
+            let mib = tree.memory() as f64 / f64::from(1 << 20);
+            println!("index   {:7.3} s   {index}, {mib:.1} MiB", start.elapsed().as_secs_f64());
+            trace(method, &scene, &tree, args)
+        }
+    })?;
+
+    let defects = rendering.image.defects();
+    save(&args.out, &rendering.image, args.exposure)?;
+    println!("picture {}", args.out.display());
+    if defects.not_finite + defects.negative > 0 {
+        bail!(
+            "{} pixels are not finite and {} are negative: please report the scene",
+            defects.not_finite,
+            defects.negative
+        );
+    }
+    Ok(())
+}
+
+/// Applies the camera and the lights of the command line.
+fn place(scene: &mut Scene, args: &Args) -> Result<()> {
+    let point = |numbers: Numbers<3>| DVec3::from(numbers.0);
+    if let Some(eye) = args.eye {
+        scene.camera.eye = point(eye);
+    }
+    if let Some(look_at) = args.look_at {
+        scene.camera.look_at = point(look_at);
+    }
+    if let Some(fov) = args.fov {
+        scene.camera.fov = fov;
+    }
+    scene.camera.check().context("--eye, --look-at, --fov")?;
+    if !args.light.is_empty() {
+        scene.lights = args
+            .light
+            .iter()
+            .map(|&Numbers([x, y, z, intensity])| PointLight {
+                position: DVec3::new(x, y, z),
+                intensity: Rgb::splat(intensity),
+            })
+            .collect();
+        ensure!(
+            scene.lights.iter().all(|light| light.intensity.x >= 0.0),
+            "--light: an intensity is at least 0"
+        );
+    }
+    Ok(())
+}
+
+fn trace(
+    method: &str,
+    scene: &Scene,
+    index: &dyn Intersector,
+    args: &Args,
+) -> Result<Rendering<RayCounts>> {
+    let world = World { scene, index };
+    let rays = scene.camera.primary_rays(args.size);
+    match method {
+        "appel" => {
+            let appel = Appel::new(world);
+            picture(args, |film, counts| appel.trace(&rays.through(film.x, film.y), counts))
+        }
+        _ => {
+            let settings = Settings { max_depth: args.depth, ..Settings::default() };
+            let whitted = Whitted::new(world, settings);
+            picture(args, |film, counts| whitted.trace(&rays.through(film.x, film.y), counts))
+        }
+    }
+}
+
+fn picture(
+    args: &Args,
+    radiance: impl Fn(DVec2, &mut RayCounts) -> Rgb + Sync,
+) -> Result<Rendering<RayCounts>> {
+    let pattern = if args.spp == 1 { Pattern::Regular } else { Pattern::Owen };
+    let sampling = PixelSampling { pattern, samples: args.spp, seed: args.seed };
+    let bar = progress::bar(args.size.pixels() as u64, "tracing");
+    let control = Control {
+        progress: &|pixels| bar.set_position(pixels),
+        cancelled: progress::watch_for_interrupt()?,
+        ..Control::default()
+    };
+    let start = Instant::now();
+    let rendering = render_pixels(args.size, sampling, control, radiance)
+        .context("interrupted; no file was written");
+    let seconds = start.elapsed().as_secs_f64();
+    bar.finish_and_clear();
+    let rendering = rendering?;
+    let counts = rendering.counts;
+    println!(
+        "trace   {seconds:7.3} s   {} rays: {} primary, {} mirror, {} refracted, {} shadow; {:.2} M/s",
+        counts.total(),
+        counts.primary,
+        counts.mirror,
+        counts.refracted,
+        counts.shadow,
+        counts.total() as f64 / seconds * 1e-6,
+    );
+    Ok(rendering)
+}

@@ -1,0 +1,27 @@
+//! What a SCENE argument means.
+
+use std::path::Path;
+
+use anyhow::Result;
+use lancer_core::scene::load::{Loaded, load};
+
+use crate::names::choose;
+
+/// Loads a `.toml` or `.obj` file, or a scene of the course by name: `whitted`, `room`, or a generated
+/// one with its level, `flake:4`.
+///
+/// # Errors
+/// As the loader; for what is neither a file nor a known name, the known names.
+pub fn open(scene: &str) -> Result<Loaded> {
+    let path = Path::new(scene);
+    if path.extension().is_some() || path.exists() {
+        return Ok(load(path)?);
+    }
+    let (name, level) = match scene.split_once(':') {
+        Some((name, level)) => (name, Some(level)),
+        None => (scene, None),
+    };
+    let known: Vec<&str> = chapter_1::scenes::NAMES.to_vec();
+    let name = known[choose("scene", name, &known)?];
+    chapter_1::scenes::open(name, level)
+}
