@@ -3,7 +3,9 @@
 //! A [`Scene`] holds no resolution, sample count or file name; those are settings of a method.
 
 mod camera;
+mod framing;
 mod light;
+pub mod load;
 mod material;
 mod mesh;
 

@@ -1,0 +1,274 @@
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+
+use super::check::within_limit;
+use super::clean::Lines;
+use super::mtl::Library;
+use super::report::{LoadError, WarningKind, Warnings};
+use super::statements::{Record, Run, Statements};
+use super::triangulate::triangulate;
+use super::{DEFAULT_GREY, MAX_COORDINATE, MAX_COUNT, Open, is_zero_area};
+use crate::scene::{Face, FaceId, Material, MaterialId, Mesh, Triangle};
+
+/// Reads an OBJ file and its material libraries.
+///
+/// tobj reads the numbers. Everything a line says beyond them (materials, groups, libraries) is
+/// kept from it and recorded, so that it returns one model whose faces share their vertices.
+pub(super) fn read_obj(
+    path: &Path,
+    open: Open<'_>,
+    warnings: &mut Warnings,
+) -> Result<(Mesh, Vec<Material>), LoadError> {
+    let file = path.display().to_string();
+    let source = Source { path, file: &file, open };
+    let mut statements = Statements::new(&file, source.open()?, warnings)?;
+    let options = tobj::LoadOptions { single_index: false, ..Default::default() };
+    // Libraries are recorded instead of handed to tobj, so its loader of materials is never called.
+    let parsed = tobj::load_obj_buf(&mut statements, &options, |_| Ok(Default::default()));
+    let model = match (statements.error.take(), parsed) {
+        (Some(error), _) => return Err(error),
+        (None, Err(error)) => return Err(statements.explain(error)),
+        (None, Ok((models, _))) => models.into_iter().next().map(|m| m.mesh).unwrap_or_default(),
+    };
+    let record = statements.record;
+    if model.indices.is_empty() {
+        return Err(LoadError::at(
+            &file,
+            None,
+            "nothing to draw: no face with 3 corners",
+            "check that this is an OBJ file with `v` and `f` lines",
+        ));
+    }
+    if !model.vertex_color.is_empty() {
+        warnings.add(&file, None, WarningKind::VertexColors);
+    }
+    let library = source.read_libraries(&record.libraries, warnings)?;
+    let (materials, run_materials) = resolve_materials(&file, library, &record, warnings);
+    let mesh = source.build_mesh(&model, &record.runs, &run_materials, warnings)?;
+    Ok((mesh, materials))
+}
+
+/// The material of each run. Runs without one get a default material at the end of the list.
+fn resolve_materials(
+    file: &str,
+    library: Library,
+    record: &Record,
+    warnings: &mut Warnings,
+) -> (Vec<Material>, Vec<MaterialId>) {
+    let named: Vec<Option<MaterialId>> =
+        record.material_names.iter().map(|(name, _)| library.find(name)).collect();
+    for ((_, line), id) in record.material_names.iter().zip(&named) {
+        if id.is_none() {
+            warnings.add(file, *line, WarningKind::UnknownMaterial);
+        }
+    }
+    let mut materials = library.materials;
+    let found: Vec<Option<MaterialId>> =
+        record.runs.iter().map(|run| run.material.and_then(|name| named[name])).collect();
+    let default = MaterialId(materials.len() as u32);
+    if found.contains(&None) {
+        materials.push(Material::matte(DEFAULT_GREY));
+    }
+    (materials, found.into_iter().map(|id| id.unwrap_or(default)).collect())
+}
+
+/// An OBJ file that can be read again, to find the line of what turned out wrong.
+struct Source<'a> {
+    path: &'a Path,
+    file: &'a str,
+    open: Open<'a>,
+}
+
+impl<'a> Source<'a> {
+    fn open(&self) -> Result<Box<dyn Read + 'a>, LoadError> {
+        (self.open)(self.path)
+            .map_err(|reason| LoadError::Unreadable { file: self.file.to_owned(), reason })
+    }
+
+    /// The first line whose keyword and numbers are `wanted`.
+    fn find_line(&self, mut wanted: impl FnMut(&str, &str) -> bool) -> Option<usize> {
+        let mut lines = Lines::new(self.file, self.open().ok()?).ok()?;
+        while let Ok(Some((number, line))) = lines.next() {
+            let statement = line.trim_start();
+            if let Some((keyword, rest)) = statement.split_once(char::is_whitespace)
+                && wanted(keyword, rest.split('#').next().unwrap_or_default())
+            {
+                return Some(number);
+            }
+        }
+        None
+    }
+
+    fn line_of_vector(&self, wanted: &str, is_bad: impl Fn(DVec3) -> bool) -> Option<usize> {
+        self.find_line(|keyword, numbers| {
+            let numbers: Vec<f64> =
+                numbers.split_whitespace().map_while(|word| word.parse().ok()).collect();
+            let weight = if let [_, _, _, weight] = numbers[..] { weight } else { 1.0 };
+            keyword == wanted && numbers.len() >= 3 && is_bad(DVec3::from_slice(&numbers) / weight)
+        })
+    }
+
+    fn line_of_face(&self, face: usize) -> Option<usize> {
+        let mut seen = 0;
+        self.find_line(|keyword, corners| {
+            seen += usize::from(keyword == "f" && corners.split_whitespace().nth(2).is_some());
+            seen > face
+        })
+    }
+
+    fn build_mesh(
+        &self,
+        model: &tobj::Mesh,
+        runs: &[Run],
+        materials: &[MaterialId],
+        warnings: &mut Warnings,
+    ) -> Result<Mesh, LoadError> {
+        let positions: Vec<DVec3> =
+            model.positions.chunks_exact(3).map(DVec3::from_slice).collect();
+        // Written so that NaN is bad.
+        let is_bad = |p: DVec3| !(p.is_finite() && p.abs().max_element() <= MAX_COORDINATE);
+        if positions.iter().any(|&p| is_bad(p)) {
+            return Err(LoadError::at(
+                self.file,
+                self.line_of_vector("v", is_bad),
+                format!("a coordinate is not finite, or beyond ±{MAX_COORDINATE:e}"),
+                "correct the number",
+            ));
+        }
+        let any_smooth = runs.iter().any(|run| run.smooth);
+        let normals = if any_smooth { self.unit_normals(&model.normals)? } else { Vec::new() };
+
+        let faces = if model.face_arities.is_empty() {
+            model.indices.len() / 3
+        } else {
+            model.face_arities.len()
+        };
+        let triangles = model.indices.len() - 2 * faces;
+        within_limit(triangles, "triangles", MAX_COUNT, "split the model")
+            .map_err(|(problem, cure)| LoadError::at(self.file, None, problem, cure))?;
+        let mut mesh = Mesh { positions, normals, ..Mesh::default() };
+        mesh.faces.reserve_exact(faces);
+        mesh.triangles.reserve_exact(triangles);
+        if any_smooth {
+            mesh.smooth.reserve_exact(triangles);
+        }
+
+        let mut findings = Findings::default();
+        let (mut polygon, mut parts) = (Vec::new(), Vec::new());
+        let (mut start, mut run) = (0, 0);
+        for face in 0..faces {
+            let end = start + model.face_arities.get(face).map_or(3, |&arity| arity as usize);
+            while runs.get(run + 1).is_some_and(|next| next.first_face <= face) {
+                run += 1;
+            }
+            let corners = &model.indices[start..end];
+            polygon.clear();
+            polygon.extend(corners.iter().map(|&vertex| mesh.positions[vertex as usize]));
+            parts.clear();
+            let defects = triangulate(&polygon, &mut parts);
+            findings.note(
+                WarningKind::SelfIntersecting,
+                face,
+                usize::from(defects.self_intersecting),
+            );
+            findings.note(WarningKind::NonPlanar, face, usize::from(defects.non_planar));
+            let is_flat = |part: &&[u32; 3]| is_zero_area(part.map(|i| polygon[i as usize]));
+            findings.note(WarningKind::ZeroArea, face, parts.iter().filter(is_flat).count());
+
+            mesh.faces.push(Face { material: materials[run] });
+            let face = FaceId(face as u32);
+            mesh.triangles.extend(
+                parts
+                    .iter()
+                    .map(|part| Triangle { vertices: part.map(|i| corners[i as usize]), face }),
+            );
+            if any_smooth {
+                let corner_normals = |part: &[u32; 3]| {
+                    runs[run].smooth.then(|| part.map(|i| model.normal_indices[start + i as usize]))
+                };
+                mesh.smooth.extend(parts.iter().map(corner_normals));
+            }
+            start = end;
+        }
+        for (kind, face, count) in findings.0 {
+            warnings.add_many(self.file, self.line_of_face(face), kind, count);
+        }
+        Ok(mesh)
+    }
+
+    fn unit_normals(&self, numbers: &[f64]) -> Result<Vec<DVec3>, LoadError> {
+        let unit = |n: &[f64]| DVec3::from_slice(n).try_normalize();
+        numbers.chunks_exact(3).map(unit).collect::<Option<_>>().ok_or_else(|| {
+            LoadError::at(
+                self.file,
+                self.line_of_vector("vn", |n| n.try_normalize().is_none()),
+                "a normal is zero or not finite",
+                "correct it, or leave the normals out for flat faces",
+            )
+        })
+    }
+
+    fn read_libraries(
+        &self,
+        names: &[(String, usize)],
+        warnings: &mut Warnings,
+    ) -> Result<Library, LoadError> {
+        let mut library = Library::default();
+        let mut paths: Vec<PathBuf> = Vec::new();
+        for (name, line) in names {
+            // One name with spaces, or several names.
+            let whole = self.library_path(name, *line)?;
+            let words = name.split_whitespace();
+            let candidates = if words.clone().count() > 1 && (self.open)(&whole).is_err() {
+                words.map(|word| self.library_path(word, *line)).collect::<Result<_, _>>()?
+            } else {
+                vec![whole]
+            };
+            for path in candidates {
+                if paths.contains(&path) {
+                    continue;
+                }
+                match (self.open)(&path) {
+                    Ok(text) => library.read(&path.display().to_string(), text, warnings)?,
+                    Err(_) => warnings.add(self.file, *line, WarningKind::MissingLibrary),
+                }
+                paths.push(path);
+            }
+        }
+        Ok(library)
+    }
+
+    /// Where a library stands: in the model's folder or below it, and nowhere else, so that a model
+    /// from a stranger cannot make us read other files.
+    fn library_path(&self, name: &str, line: usize) -> Result<PathBuf, LoadError> {
+        let name = name.replace('\\', "/");
+        let has_drive = name.as_bytes().get(1) == Some(&b':');
+        if name.starts_with('/') || has_drive || name.split('/').any(|part| part == "..") {
+            return Err(LoadError::at(
+                self.file,
+                line,
+                format!("mtllib `{name}` is outside the model's folder"),
+                "put the library beside the model and name it without a path",
+            ));
+        }
+        Ok(self.path.parent().unwrap_or(Path::new("")).join(name))
+    }
+}
+
+/// Findings about faces: their kind, the first face, how many.
+#[derive(Default)]
+struct Findings(Vec<(WarningKind, usize, usize)>);
+
+impl Findings {
+    fn note(&mut self, kind: WarningKind, face: usize, count: usize) {
+        if count == 0 {
+            return;
+        }
+        match self.0.iter_mut().find(|finding| finding.0 == kind) {
+            Some(finding) => finding.2 += count,
+            None => self.0.push((kind, face, count)),
+        }
+    }
+}
