@@ -10,6 +10,8 @@ mod obj;
 mod report;
 mod scene_toml;
 mod statements;
+#[cfg(test)]
+mod tests;
 mod triangulate;
 
 use std::fs::File;

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 
-use super::check::within_limit;
+use super::check::{excerpt, within_limit};
 use super::clean::Lines;
 use super::mtl::Library;
 use super::report::{LoadError, WarningKind, Warnings};
@@ -29,7 +29,7 @@ pub(super) fn read_obj(
     let parsed = tobj::load_obj_buf(&mut statements, &options, |_| Ok(Default::default()));
     let model = match (statements.error.take(), parsed) {
         (Some(error), _) => return Err(error),
-        (None, Err(error)) => return Err(statements.explain(error)),
+        (None, Err(error)) => return Err(source.explain(error, &statements)),
         (None, Ok((models, _))) => models.into_iter().next().map(|m| m.mesh).unwrap_or_default(),
     };
     let record = statements.record;
@@ -85,6 +85,26 @@ impl<'a> Source<'a> {
     fn open(&self) -> Result<Box<dyn Read + 'a>, LoadError> {
         (self.open)(self.path)
             .map_err(|reason| LoadError::Unreadable { file: self.file.to_owned(), reason })
+    }
+
+    /// tobj's error as ours: it stopped at the line it was given last, or at the end for colours.
+    fn explain(&self, error: tobj::LoadError, statements: &Statements<'_, '_>) -> LoadError {
+        if error == tobj::LoadError::FaceColorOutOfBounds {
+            let is_grey = |keyword: &str, numbers: &str| {
+                keyword == "v" && numbers.split_whitespace().nth(5).is_none()
+            };
+            let problem = "this vertex has no colour and others have one";
+            let cure = "give every `v` three numbers, or every `v` six";
+            return LoadError::at(self.file, self.find_line(is_grey), problem, cure);
+        }
+        let line = excerpt(&statements.line);
+        let (problem, cure) = if error == tobj::LoadError::ScalingByZeroError {
+            (format!("`{line}` has the weight 0"), "remove the fourth number")
+        } else {
+            let cure = "write three numbers, with a decimal point";
+            (format!("`{line}` cannot be read"), cure)
+        };
+        LoadError::at(self.file, statements.number, problem, cure)
     }
 
     /// The first line whose keyword and numbers are `wanted`.

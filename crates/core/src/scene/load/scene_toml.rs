@@ -297,7 +297,7 @@ impl Source<'_> {
         }
         let center = self.point("center", &table.center)?;
         let radius = self.number("radius", &table.radius, Range::Positive)?;
-        check_point("radius", DVec3::splat(radius))
+        check_point("center + radius", center + radius)
             .map_err(|problem| self.error(table.radius.span(), problem))?;
         Ok(SphereObject { shape: Sphere { center, radius }, material: id })
     }
@@ -422,7 +422,8 @@ fn check_point(name: &str, point: DVec3) -> Result<DVec3, Problem> {
     if point.is_finite() && point.abs().max_element() <= MAX_COORDINATE {
         Ok(point)
     } else {
-        Err((format!("{name} is {point}"), "coordinates must be finite and below 1e50"))
+        let problem = format!("{name} is {:?}", point.to_array());
+        Err((problem, "coordinates must be finite and below 1e50"))
     }
 }
 

@@ -39,9 +39,9 @@ pub(super) struct Statements<'a, 'w> {
     pub record: Record,
     names: HashMap<String, usize>,
     /// The line tobj is reading, and how much of it tobj has taken.
-    line: String,
+    pub line: String,
     taken: usize,
-    number: usize,
+    pub number: usize,
     /// Why reading stopped.
     pub error: Option<LoadError>,
 }
@@ -127,28 +127,6 @@ impl<'a, 'w> Statements<'a, 'w> {
         self.record
             .check_last_indices()
             .map_err(|(line, (problem, cure))| LoadError::at(self.file, line, problem, cure))
-    }
-
-    /// tobj's error as ours: it stopped at the line it took last.
-    pub fn explain(&self, error: tobj::LoadError) -> LoadError {
-        let (line, problem, cure) = match error {
-            tobj::LoadError::FaceColorOutOfBounds => (
-                None,
-                "some vertices have a colour and others have none".to_owned(),
-                "give every `v` three numbers, or every `v` six",
-            ),
-            tobj::LoadError::ScalingByZeroError => (
-                Some(self.number),
-                format!("`{}` has the weight 0", excerpt(&self.line)),
-                "remove the fourth number",
-            ),
-            _ => (
-                Some(self.number),
-                format!("`{}` cannot be read", excerpt(&self.line)),
-                "write three numbers after `v` and `vn`, with a decimal point",
-            ),
-        };
-        LoadError::at(self.file, line, problem, cure)
     }
 }
 
