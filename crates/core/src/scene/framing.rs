@@ -1,3 +1,6 @@
+use std::error::Error;
+use std::fmt;
+
 use glam::DVec3;
 
 use super::{Camera, PointLight, Scene};
@@ -30,7 +33,60 @@ impl Scene {
     }
 }
 
+/// Why a [`Camera`] cannot make a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CameraError {
+    /// A coordinate is NaN or infinite.
+    NotFinite,
+    /// The eye is the point looked at.
+    NoDirection,
+    /// `up` is zero or along the line of sight.
+    UpAlongView,
+    /// `fov` is not between 0 and 180 degrees.
+    Fov,
+}
+
+impl CameraError {
+    pub(super) fn problem_and_cure(self) -> (&'static str, &'static str) {
+        match self {
+            Self::NotFinite => ("the camera is not finite", "correct its coordinates"),
+            Self::NoDirection => ("look_at is the same point as eye", "move one of the two"),
+            Self::UpAlongView => ("up is zero or along the line of sight", "choose another `up`"),
+            Self::Fov => ("fov is out of range", "it must be between 0 and 180 degrees"),
+        }
+    }
+}
+
+impl fmt::Display for CameraError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (problem, cure) = self.problem_and_cure();
+        write!(f, "{problem}; {cure}")
+    }
+}
+
+impl Error for CameraError {}
+
 impl Camera {
+    /// Checks what [`Camera::primary_rays`] takes for granted.
+    ///
+    /// # Errors
+    /// When the line of sight, the vertical or the opening angle is not defined.
+    pub fn check(&self) -> Result<(), CameraError> {
+        let view = self.look_at - self.eye;
+        let across = view.cross(self.up).length();
+        if !(self.eye.is_finite() && self.look_at.is_finite() && self.up.is_finite()) {
+            Err(CameraError::NotFinite)
+        } else if view == DVec3::ZERO {
+            Err(CameraError::NoDirection)
+        } else if across <= 1e-12 * view.length() * self.up.length() {
+            Err(CameraError::UpAlongView)
+        } else if self.fov > 0.0 && self.fov < 180.0 {
+            Ok(())
+        } else {
+            Err(CameraError::Fov)
+        }
+    }
+
     /// A camera that sees all of `bounds` in a square picture, from the front (+z), to the right
     /// and slightly above.
     pub fn framing(bounds: Sphere) -> Self {
@@ -49,7 +105,7 @@ impl Camera {
 
 impl PointLight {
     /// A white light to the upper left of `camera`, as far from it as a fifth of the way to what it
-    /// looks at.
+    /// looks at. The camera must pass [`Camera::check`].
     ///
     /// There it gives what a perpendicular white surface returns as 1: its intensity grows with the
     /// square of the distance, so that small and large models come out equally bright.
@@ -80,6 +136,21 @@ mod tests {
         }
         let from = camera.eye - bounds.center;
         assert!(from.z > from.x && from.x > 0.0 && from.y > 0.0);
+    }
+
+    #[test]
+    fn cameras_without_a_picture_are_told() {
+        let good = Camera { eye: DVec3::Z, look_at: DVec3::ZERO, up: DVec3::Y, fov: 40.0 };
+        assert_eq!(good.check(), Ok(()));
+        let nan = Camera { eye: dvec3(0.0, f64::NAN, 0.0), ..good };
+        assert_eq!(nan.check(), Err(CameraError::NotFinite));
+        assert_eq!(Camera { eye: DVec3::ZERO, ..good }.check(), Err(CameraError::NoDirection));
+        for up in [DVec3::ZERO, DVec3::Z, -2.0 * DVec3::Z] {
+            assert_eq!(Camera { up, ..good }.check(), Err(CameraError::UpAlongView));
+        }
+        for fov in [0.0, -1.0, 180.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(Camera { fov, ..good }.check(), Err(CameraError::Fov));
+        }
     }
 
     #[test]

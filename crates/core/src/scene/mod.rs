@@ -10,6 +10,7 @@ mod material;
 mod mesh;
 
 pub use camera::{Camera, PrimaryRays};
+pub use framing::CameraError;
 pub use light::PointLight;
 pub use material::{Material, MaterialId, Pigment};
 pub use mesh::{Face, FaceId, Mesh, Triangle};

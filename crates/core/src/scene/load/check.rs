@@ -1,3 +1,7 @@
+use glam::DVec3;
+
+use super::MAX_COORDINATE;
+
 /// What is wrong, and what to do about it.
 pub(super) type Problem = (String, &'static str);
 
@@ -47,4 +51,9 @@ pub(super) fn excerpt(text: &str) -> String {
         Some((end, _)) => format!("{}…", &text[..end]),
         None => text.to_owned(),
     }
+}
+
+/// Whether a point is finite and not so far that lengths and areas overflow.
+pub(super) fn is_in_space(point: DVec3) -> bool {
+    point.is_finite() && point.abs().max_element() <= MAX_COORDINATE
 }

@@ -2,6 +2,9 @@
 //!
 //! Every refusal is one line, `file:line: what is wrong; cure`. What can be drawn although it is odd
 //! is drawn, with a counted [`Warning`].
+//!
+//! # The format of a scene file
+#![doc = concat!("```toml\n", include_str!("format.toml"), "```")]
 
 mod check;
 mod clean;
@@ -10,6 +13,7 @@ mod obj;
 mod report;
 mod scene_toml;
 mod statements;
+mod tables;
 #[cfg(test)]
 mod tests;
 mod triangulate;
@@ -75,6 +79,22 @@ pub fn load(path: &Path) -> Result<Loaded, LoadError> {
 
 /// Reads a scene from the text of a `.toml`, such as one embedded by `include_str!`. `name` stands
 /// for the file in messages; the meshes it names are looked for in `folder`.
+///
+/// ```
+/// use std::path::Path;
+///
+/// let text = "
+///     ambient = 0.1
+///     material.red.rho_d = [0.8, 0.1, 0.1]
+///     [[sphere]]
+///     center = [0, 0, 0]
+///     radius = 1
+///     material = 'red'
+/// ";
+/// let loaded = lancer_core::scene::load::parse_scene(text, "ball.toml", Path::new(""))?;
+/// assert_eq!(loaded.scene.spheres.len(), 1);
+/// # Ok::<(), lancer_core::scene::load::LoadError>(())
+/// ```
 ///
 /// # Errors
 /// As [`load`].

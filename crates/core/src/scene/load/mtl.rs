@@ -1,10 +1,11 @@
 use std::collections::HashMap;
 use std::io::Read;
+use std::path::{Path, PathBuf};
 
-use super::DEFAULT_GREY;
 use super::check::{Problem, Range, excerpt, in_range};
 use super::clean::Lines;
 use super::report::{LoadError, WarningKind, Warnings};
+use super::{DEFAULT_GREY, Open};
 use crate::Rgb;
 use crate::scene::{Material, MaterialId, Pigment};
 
@@ -19,6 +20,46 @@ pub(super) struct Library {
 }
 
 impl Library {
+    /// The materials of the libraries that the OBJ file `model` names at the given lines.
+    ///
+    /// # Errors
+    /// When a library is outside the model's folder, or its content is wrong.
+    pub fn of_model(
+        model: &Path,
+        names: &[(String, usize)],
+        open: Open<'_>,
+        warnings: &mut Warnings,
+    ) -> Result<Self, LoadError> {
+        let mut library = Self::default();
+        let file = model.display().to_string();
+        let mut paths: Vec<PathBuf> = Vec::new();
+        for (name, line) in names {
+            let place = |name| {
+                library_path(model, name)
+                    .map_err(|(problem, cure)| LoadError::at(&file, *line, problem, cure))
+            };
+            // One name with spaces, or several names.
+            let whole = place(name)?;
+            let words = name.split_whitespace();
+            let candidates = if words.clone().count() > 1 && open(&whole).is_err() {
+                words.map(place).collect::<Result<_, _>>()?
+            } else {
+                vec![whole]
+            };
+            for path in candidates {
+                if paths.contains(&path) {
+                    continue;
+                }
+                match open(&path) {
+                    Ok(text) => library.read(&path.display().to_string(), text, warnings)?,
+                    Err(_) => warnings.add(&file, *line, WarningKind::MissingLibrary),
+                }
+                paths.push(path);
+            }
+        }
+        Ok(library)
+    }
+
     pub fn find(&self, name: &str) -> Option<MaterialId> {
         self.names.get(name).map(|(id, _)| *id)
     }
@@ -27,14 +68,14 @@ impl Library {
     ///
     /// # Errors
     /// When a value is missing, not a number or out of range, or a name is used twice.
-    pub fn read(
+    fn read(
         &mut self,
         file: &str,
         text: Box<dyn Read + '_>,
         warnings: &mut Warnings,
     ) -> Result<(), LoadError> {
         let mut lines = Lines::new(file, text)?;
-        let mut current: Option<Statements> = None;
+        let mut current: Option<Definition> = None;
         while let Some((number, line)) = lines.next()? {
             let statement = line.trim();
             let (keyword, rest) =
@@ -46,7 +87,7 @@ impl Library {
                 "newmtl" => {
                     self.materials.extend(current.take().map(|done| done.material()));
                     self.define(rest.trim(), file, number).map_err(invalid)?;
-                    current = Some(Statements::default());
+                    current = Some(Definition::default());
                 }
                 "Kd" | "Ks" | "Ke" | "Tf" | "Ns" | "Ni" | "d" | "Tr" | "illum" => {
                     let words = rest.split('#').next().unwrap_or_default();
@@ -77,6 +118,18 @@ impl Library {
         self.names.insert(name.to_owned(), (id, format!("{file}:{line}")));
         Ok(())
     }
+}
+
+/// Where a library stands: in the model's folder or below it, and nowhere else, so that a model
+/// from a stranger cannot make us read other files.
+fn library_path(model: &Path, name: &str) -> Result<PathBuf, Problem> {
+    let name = name.replace('\\', "/");
+    let has_drive = name.as_bytes().get(1) == Some(&b':');
+    if name.starts_with('/') || has_drive || name.split('/').any(|part| part == "..") {
+        let problem = format!("mtllib `{name}` is outside the model's folder");
+        return Err((problem, "put the library beside the model and name it without a path"));
+    }
+    Ok(model.parent().unwrap_or(Path::new("")).join(name))
 }
 
 /// Statements about effects that are not in the slides: textures and the later "PBR" extension.
@@ -116,7 +169,7 @@ fn outside(keyword: &str) -> Problem {
 
 /// What an MTL file says about one material.
 #[derive(Default)]
-struct Statements {
+struct Definition {
     kd: Option<Rgb>,
     ks: Option<Rgb>,
     ke: Option<Rgb>,
@@ -129,7 +182,7 @@ struct Statements {
     illum: Option<f64>,
 }
 
-impl Statements {
+impl Definition {
     fn set(&mut self, keyword: &str, words: &str) -> Result<(), Problem> {
         let number = |range| in_range(keyword, scalar(keyword, words)?, range);
         let color = |range| {

@@ -1,9 +1,9 @@
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glam::DVec3;
 
-use super::check::{excerpt, within_limit};
+use super::check::{excerpt, is_in_space, within_limit};
 use super::clean::Lines;
 use super::mtl::Library;
 use super::report::{LoadError, WarningKind, Warnings};
@@ -44,7 +44,7 @@ pub(super) fn read_obj(
     if !model.vertex_color.is_empty() {
         warnings.add(&file, None, WarningKind::VertexColors);
     }
-    let library = source.read_libraries(&record.libraries, warnings)?;
+    let library = Library::of_model(path, &record.libraries, open, warnings)?;
     let (materials, run_materials) = resolve_materials(&file, library, &record, warnings);
     let mesh = source.build_mesh(&model, &record.runs, &run_materials, warnings)?;
     Ok((mesh, materials))
@@ -147,12 +147,10 @@ impl<'a> Source<'a> {
     ) -> Result<Mesh, LoadError> {
         let positions: Vec<DVec3> =
             model.positions.chunks_exact(3).map(DVec3::from_slice).collect();
-        // Written so that NaN is bad.
-        let is_bad = |p: DVec3| !(p.is_finite() && p.abs().max_element() <= MAX_COORDINATE);
-        if positions.iter().any(|&p| is_bad(p)) {
+        if !positions.iter().copied().all(is_in_space) {
             return Err(LoadError::at(
                 self.file,
-                self.line_of_vector("v", is_bad),
+                self.line_of_vector("v", |p| !is_in_space(p)),
                 format!("a coordinate is not finite, or beyond ±{MAX_COORDINATE:e}"),
                 "correct the number",
             ));
@@ -188,14 +186,14 @@ impl<'a> Source<'a> {
             polygon.extend(corners.iter().map(|&vertex| mesh.positions[vertex as usize]));
             parts.clear();
             let defects = triangulate(&polygon, &mut parts);
-            findings.note(
-                WarningKind::SelfIntersecting,
-                face,
-                usize::from(defects.self_intersecting),
-            );
-            findings.note(WarningKind::NonPlanar, face, usize::from(defects.non_planar));
             let is_flat = |part: &&[u32; 3]| is_zero_area(part.map(|i| polygon[i as usize]));
-            findings.note(WarningKind::ZeroArea, face, parts.iter().filter(is_flat).count());
+            for (kind, count) in [
+                (WarningKind::SelfIntersecting, usize::from(defects.self_intersecting)),
+                (WarningKind::NonPlanar, usize::from(defects.non_planar)),
+                (WarningKind::ZeroArea, parts.iter().filter(is_flat).count()),
+            ] {
+                findings.note(kind, face, count);
+            }
 
             mesh.faces.push(Face { material: materials[run] });
             let face = FaceId(face as u32);
@@ -228,52 +226,6 @@ impl<'a> Source<'a> {
                 "correct it, or leave the normals out for flat faces",
             )
         })
-    }
-
-    fn read_libraries(
-        &self,
-        names: &[(String, usize)],
-        warnings: &mut Warnings,
-    ) -> Result<Library, LoadError> {
-        let mut library = Library::default();
-        let mut paths: Vec<PathBuf> = Vec::new();
-        for (name, line) in names {
-            // One name with spaces, or several names.
-            let whole = self.library_path(name, *line)?;
-            let words = name.split_whitespace();
-            let candidates = if words.clone().count() > 1 && (self.open)(&whole).is_err() {
-                words.map(|word| self.library_path(word, *line)).collect::<Result<_, _>>()?
-            } else {
-                vec![whole]
-            };
-            for path in candidates {
-                if paths.contains(&path) {
-                    continue;
-                }
-                match (self.open)(&path) {
-                    Ok(text) => library.read(&path.display().to_string(), text, warnings)?,
-                    Err(_) => warnings.add(self.file, *line, WarningKind::MissingLibrary),
-                }
-                paths.push(path);
-            }
-        }
-        Ok(library)
-    }
-
-    /// Where a library stands: in the model's folder or below it, and nowhere else, so that a model
-    /// from a stranger cannot make us read other files.
-    fn library_path(&self, name: &str, line: usize) -> Result<PathBuf, LoadError> {
-        let name = name.replace('\\', "/");
-        let has_drive = name.as_bytes().get(1) == Some(&b':');
-        if name.starts_with('/') || has_drive || name.split('/').any(|part| part == "..") {
-            return Err(LoadError::at(
-                self.file,
-                line,
-                format!("mtllib `{name}` is outside the model's folder"),
-                "put the library beside the model and name it without a path",
-            ));
-        }
-        Ok(self.path.parent().unwrap_or(Path::new("")).join(name))
     }
 }
 

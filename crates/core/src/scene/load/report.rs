@@ -64,7 +64,7 @@ pub enum WarningKind {
     NotAFace,
     /// Vertex colours of an OBJ; colours come from materials.
     VertexColors,
-    /// A material library that does not exist.
+    /// A material library that does not exist or cannot be opened.
     MissingLibrary,
     /// `usemtl` names a material that no library defines.
     UnknownMaterial,
@@ -90,7 +90,7 @@ impl fmt::Display for WarningKind {
             Self::NotAFace => f.write_str("lines, points, curves and surfaces ignored: only faces are drawn"),
             Self::VertexColors => f.write_str("vertex colours ignored: colours come from materials"),
             Self::MissingLibrary => {
-                f.write_str("material library not found; its materials become light grey")
+                f.write_str("material library cannot be opened; its materials become light grey")
             }
             Self::UnknownMaterial => {
                 f.write_str("material not defined in any library; its faces become light grey")

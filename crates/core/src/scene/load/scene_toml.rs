@@ -1,13 +1,14 @@
-use std::collections::BTreeMap;
 use std::ops::Range as Span;
 use std::path::Path;
 
 use glam::{DAffine3, DMat3, DVec3};
-use serde::Deserialize;
 use toml::Spanned;
 
-use super::check::{Problem, Range, excerpt, in_range, within_limit};
+use super::check::{Problem, Range, excerpt, in_range, is_in_space, within_limit};
 use super::report::{LoadError, WarningKind, Warnings};
+use super::tables::{
+    CameraTable, MaterialTable, MeshTable, PigmentValue, SceneFile, SphereTable, Triple,
+};
 use super::triangulate::triangulate;
 use super::{
     Loaded, MAX_COORDINATE, MAX_CORNERS, MAX_COUNT, Open, empty_scene, finish, frame, is_zero_area,
@@ -15,106 +16,9 @@ use super::{
 };
 use crate::Rgb;
 use crate::geometry::Sphere;
-use crate::scene::{Camera, Material, MaterialId, Mesh, Pigment, PointLight, Scene, SphereObject};
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SceneFile {
-    camera: Option<CameraTable>,
-    ambient: Option<Spanned<Triple>>,
-    background: Option<Spanned<Triple>>,
-    #[serde(default)]
-    light: Vec<LightTable>,
-    #[serde(default)]
-    material: BTreeMap<String, MaterialTable>,
-    #[serde(default)]
-    sphere: Vec<SphereTable>,
-    #[serde(default)]
-    mesh: Vec<MeshTable>,
-    #[serde(default)]
-    polygon: Vec<PolygonTable>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct CameraTable {
-    eye: Spanned<[f64; 3]>,
-    look_at: Spanned<[f64; 3]>,
-    up: Option<Spanned<[f64; 3]>>,
-    fov: Spanned<f64>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct LightTable {
-    position: Spanned<[f64; 3]>,
-    intensity: Spanned<Triple>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct MaterialTable {
-    rho_d: Option<Spanned<PigmentValue>>,
-    rho_s: Option<Spanned<Triple>>,
-    shininess: Option<Spanned<f64>>,
-    k_s: Option<Spanned<Triple>>,
-    k_t: Option<Spanned<Triple>>,
-    refractive_index: Option<Spanned<f64>>,
-    emission: Option<Spanned<Triple>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SphereTable {
-    center: Spanned<[f64; 3]>,
-    radius: Spanned<f64>,
-    material: Spanned<String>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct MeshTable {
-    obj: Spanned<String>,
-    material: Option<Spanned<String>>,
-    scale: Option<Spanned<Triple>>,
-    rotate: Option<Spanned<[f64; 3]>>,
-    translate: Option<Spanned<[f64; 3]>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct PolygonTable {
-    vertices: Spanned<Vec<[f64; 3]>>,
-    material: Spanned<String>,
-}
-
-/// Three numbers, or one that stands for three.
-#[derive(Clone, Copy, Deserialize)]
-#[serde(untagged, expecting = "expected a number or an array of three")]
-enum Triple {
-    Same(f64),
-    Each([f64; 3]),
-}
-
-impl Triple {
-    fn vector(self) -> DVec3 {
-        match self {
-            Self::Same(value) => DVec3::splat(value),
-            Self::Each(values) => values.into(),
-        }
-    }
-}
-
-#[derive(Deserialize)]
-#[serde(
-    untagged,
-    deny_unknown_fields,
-    expecting = "expected a number, an array of three, or { checker = [color, color], side = length }"
-)]
-enum PigmentValue {
-    Solid(Triple),
-    Checker { checker: [Triple; 2], side: f64 },
-}
+use crate::scene::{
+    Camera, CameraError, Material, MaterialId, Mesh, Pigment, PointLight, Scene, SphereObject,
+};
 
 /// See [`super::parse_scene`].
 pub(super) fn parse(
@@ -127,11 +31,8 @@ pub(super) fn parse(
     let file: SceneFile = toml::from_str(text).map_err(|error| source.explain(&error))?;
     let mut warnings = Warnings::default();
     let mut scene = empty_scene();
-    let color = |name, value: &Option<Spanned<Triple>>, range| {
-        value.as_ref().map_or(Ok(Rgb::ZERO), |value| source.color(name, value, range))
-    };
-    scene.ambient = color("ambient", &file.ambient, Range::NotNegative)?;
-    scene.background = color("background", &file.background, Range::NotNegative)?;
+    scene.ambient = source.color_or_black("ambient", &file.ambient, Range::NotNegative)?;
+    scene.background = source.color_or_black("background", &file.background, Range::NotNegative)?;
     for light in &file.light {
         scene.lights.push(PointLight {
             position: source.point("position", &light.position)?,
@@ -176,7 +77,11 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
-    fn error(&self, span: Span<usize>, (problem, cure): (String, impl Into<String>)) -> LoadError {
+    fn error(
+        &self,
+        span: Span<usize>,
+        (problem, cure): (impl Into<String>, impl Into<String>),
+    ) -> LoadError {
         let before = self.text.as_bytes().get(..span.start).unwrap_or_default();
         let line = 1 + before.iter().filter(|&&byte| byte == b'\n').count();
         LoadError::at(self.name, line, problem, cure)
@@ -204,6 +109,15 @@ impl Source<'_> {
             .map_err(|problem| self.error(value.span(), problem))
     }
 
+    fn color_or_black(
+        &self,
+        name: &str,
+        value: &Option<Spanned<Triple>>,
+        range: Range,
+    ) -> Result<Rgb, LoadError> {
+        value.as_ref().map_or(Ok(Rgb::ZERO), |value| self.color(name, value, range))
+    }
+
     fn point(&self, name: &str, value: &Spanned<[f64; 3]>) -> Result<DVec3, LoadError> {
         check_point(name, (*value.get_ref()).into())
             .map_err(|problem| self.error(value.span(), problem))
@@ -214,47 +128,35 @@ impl Source<'_> {
             eye: self.point("eye", &table.eye)?,
             look_at: self.point("look_at", &table.look_at)?,
             up: table.up.as_ref().map_or(Ok(DVec3::Y), |up| self.point("up", up))?,
-            fov: self.number("fov", &table.fov, Range::Positive)?,
+            fov: *table.fov.get_ref(),
         };
-        let view = camera.look_at - camera.eye;
-        let refuse = |span, problem: &str, cure| Err(self.error(span, (problem.to_owned(), cure)));
-        if view == DVec3::ZERO {
-            refuse(table.look_at.span(), "look_at is the same point as eye", "move one of the two")
-        } else if view.cross(camera.up).length() <= 1e-12 * view.length() * camera.up.length() {
-            let span = table.up.as_ref().map_or(table.look_at.span(), Spanned::span);
-            refuse(span, "up is zero or along the line of sight", "choose another `up`")
-        } else if camera.fov >= 180.0 {
-            let problem = format!("fov is {}", camera.fov);
-            refuse(table.fov.span(), &problem, "it must be between 0 and 180 degrees")
-        } else {
-            Ok(camera)
-        }
+        camera.check().map_err(|error| {
+            let span = match error {
+                CameraError::NotFinite | CameraError::NoDirection => table.look_at.span(),
+                CameraError::UpAlongView => {
+                    table.up.as_ref().map_or(table.look_at.span(), Spanned::span)
+                }
+                CameraError::Fov => table.fov.span(),
+            };
+            self.error(span, error.problem_and_cure())
+        })?;
+        Ok(camera)
     }
 
     fn material(&self, table: &MaterialTable) -> Result<Material, LoadError> {
-        let share = |name, value: &Option<Spanned<Triple>>| {
-            value.as_ref().map_or(Ok(Rgb::ZERO), |value| self.color(name, value, Range::Share))
+        let share = |name, value| self.color_or_black(name, value, Range::Share);
+        let number = |name, value: &Option<Spanned<f64>>, range| {
+            value.as_ref().map_or(Ok(1.0), |value| self.number(name, value, range))
         };
-        let positive = |name, value: &Option<Spanned<f64>>| {
-            value.as_ref().map_or(Ok(1.0), |value| self.number(name, value, Range::Positive))
-        };
+        let black = Ok(Pigment::Solid(Rgb::ZERO));
         Ok(Material {
-            rho_d: table
-                .rho_d
-                .as_ref()
-                .map_or(Ok(Pigment::Solid(Rgb::ZERO)), |value| self.pigment(value))?,
+            rho_d: table.rho_d.as_ref().map_or(black, |value| self.pigment(value))?,
             rho_s: share("rho_s", &table.rho_s)?,
-            shininess: table
-                .shininess
-                .as_ref()
-                .map_or(Ok(1.0), |value| self.number("shininess", value, Range::NotNegative))?,
+            shininess: number("shininess", &table.shininess, Range::NotNegative)?,
             k_s: share("k_s", &table.k_s)?,
             k_t: share("k_t", &table.k_t)?,
-            refractive_index: positive("refractive_index", &table.refractive_index)?,
-            emission: table
-                .emission
-                .as_ref()
-                .map_or(Ok(Rgb::ZERO), |value| self.color("emission", value, Range::NotNegative))?,
+            refractive_index: number("refractive_index", &table.refractive_index, Range::Positive)?,
+            emission: self.color_or_black("emission", &table.emission, Range::NotNegative)?,
         })
     }
 
@@ -419,7 +321,7 @@ fn check_color(name: &str, color: Triple, range: Range) -> Result<Rgb, Problem> 
 }
 
 fn check_point(name: &str, point: DVec3) -> Result<DVec3, Problem> {
-    if point.is_finite() && point.abs().max_element() <= MAX_COORDINATE {
+    if is_in_space(point) {
         Ok(point)
     } else {
         let problem = format!("{name} is {:?}", point.to_array());

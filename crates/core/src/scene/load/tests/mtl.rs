@@ -157,7 +157,8 @@ fn libraries_missing_or_shared() {
     }
     assert_eq!(warnings(&with("mtllib with space.mtl").expect("fine")), [""; 0]);
 
-    let missing = "models/a.obj:1: material library not found; its materials become light grey";
+    let missing =
+        "models/a.obj:1: material library cannot be opened; its materials become light grey";
     let undefined = "material not defined in any library; its faces become light grey";
     assert_eq!(warnings(&with("mtllib gone.mtl m.mtl").expect("fine")), [missing]);
     let loaded = with("mtllib gone.mtl").expect("fine");

@@ -5,62 +5,7 @@ use crate::geometry::Sphere;
 use crate::scene::{FaceId, Material, MaterialId, Pigment};
 
 /// Every key of the format.
-const EVERYTHING: &str = "\
-ambient = 0.1
-background = [0.2, 0.3, 0.4]
-
-[camera]
-eye = [0, 1, 5]
-look_at = [0, 1, 0]
-up = [0, 2, 0]
-fov = 45
-
-[[light]]
-position = [1, 4, 2]
-intensity = [10, 9, 8.5]
-
-[[light]]
-position = [-1, 4, 2]
-intensity = 3
-
-[material.floor]
-rho_d = { checker = [0.9, [0.1, 0.2, 0.3]], side = 0.5 }
-
-[material.glass]
-rho_d = 0.05
-rho_s = 0.5
-shininess = 80
-k_s = 0.1
-k_t = [0.9, 0.8, 0.7]
-refractive_index = 1.5
-
-[material.lamp]
-emission = [5, 5, 4]
-
-[[sphere]]
-center = [0, 1, 0]
-radius = 1
-material = 'glass'
-
-[[polygon]]
-vertices = [[-2, 0, -2], [-2, 0, 2], [2, 0, 2], [2, 0, -2]]
-material = 'floor'
-
-[[polygon]]
-vertices = [[0, 3, 0], [1, 3, 0], [1, 3, 1]]
-material = 'lamp'
-
-[[mesh]]
-obj = 'parts/a.obj'
-material = 'floor'
-scale = [2, 1, 1]
-rotate = [90, 0, 90]
-translate = [0, 0, 1]
-
-[[mesh]]
-obj = 'parts/a.obj'
-scale = -1
-";
+const EVERYTHING: &str = include_str!("../format.toml");
 
 fn scene(text: impl AsRef<str>) -> Result<Loaded, LoadError> {
     let a = b"v 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl red\nf 1 2 3\nmtllib a.mtl\n";
@@ -179,9 +124,9 @@ fn bad_values_are_refused_with_their_line() {
             "up is zero or along the line of sight",
             "choose another `up`",
         ),
-        ("fov = 45", "fov = 180", "fov is 180", "it must be between 0 and 180 degrees"),
-        ("fov = 45", "fov = 0", "fov is 0", positive),
-        ("fov = 45", "fov = nan", "fov is NaN", positive),
+        ("fov = 45", "fov = 180", "fov is out of range", "it must be between 0 and 180 degrees"),
+        ("fov = 45", "fov = 0", "fov is out of range", "it must be between 0 and 180 degrees"),
+        ("fov = 45", "fov = nan", "fov is out of range", "it must be between 0 and 180 degrees"),
         ("position = [1, 4, 2]", "position = [1, inf, 2]", "position is [1.0, inf, 2.0]", finite),
         (
             "intensity = 3",
