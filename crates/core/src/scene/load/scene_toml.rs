@@ -96,7 +96,7 @@ impl Source<'_> {
             Some(_) if message.starts_with("missing field") => "add it".to_owned(),
             _ => "correct the value or the syntax".to_owned(),
         };
-        let problem = message.split(", expected one of").next().unwrap_or_default().to_owned();
+        let problem = message.split(", expected one of").next().unwrap_or_default();
         self.error(error.span().unwrap_or_default(), (problem, cure))
     }
 
@@ -150,7 +150,9 @@ impl Source<'_> {
         };
         let black = Ok(Pigment::Solid(Rgb::ZERO));
         Ok(Material {
-            rho_d: table.rho_d.as_ref().map_or(black, |value| self.pigment(value))?,
+            rho_d: table.rho_d.as_ref().map_or(black, |value| {
+                check_pigment(value.get_ref()).map_err(|problem| self.error(value.span(), problem))
+            })?,
             rho_s: share("rho_s", &table.rho_s)?,
             shininess: number("shininess", &table.shininess, Range::NotNegative)?,
             k_s: share("k_s", &table.k_s)?,
@@ -158,22 +160,6 @@ impl Source<'_> {
             refractive_index: number("refractive_index", &table.refractive_index, Range::Positive)?,
             emission: self.color_or_black("emission", &table.emission, Range::NotNegative)?,
         })
-    }
-
-    fn pigment(&self, value: &Spanned<PigmentValue>) -> Result<Pigment, LoadError> {
-        let pigment = match value.get_ref() {
-            PigmentValue::Solid(color) => {
-                check_color("rho_d", *color, Range::Share).map(Pigment::Solid)
-            }
-            PigmentValue::Checker { checker: [even, odd], side } => (|| {
-                Ok(Pigment::Checker {
-                    even: check_color("rho_d", *even, Range::Share)?,
-                    odd: check_color("rho_d", *odd, Range::Share)?,
-                    side: in_range("side", *side, Range::Positive)?,
-                })
-            })(),
-        };
-        pigment.map_err(|problem| self.error(value.span(), problem))
     }
 
     fn material_id(&self, names: &[&str], name: &Spanned<String>) -> Result<MaterialId, LoadError> {
@@ -193,7 +179,7 @@ impl Source<'_> {
         id: MaterialId,
     ) -> Result<SphereObject, LoadError> {
         if material.emits() {
-            let problem = "a sphere cannot emit: area lights are faces".to_owned();
+            let problem = "a sphere cannot emit: area lights are faces";
             let cure = "use a [[polygon]] for the light, or a material without emission";
             return Err(self.error(table.material.span(), (problem, cure)));
         }
@@ -318,6 +304,17 @@ fn check_color(name: &str, color: Triple, range: Range) -> Result<Rgb, Problem> 
         in_range(name, channel, range)?;
     }
     Ok(color)
+}
+
+fn check_pigment(value: &PigmentValue) -> Result<Pigment, Problem> {
+    Ok(match value {
+        PigmentValue::Solid(color) => Pigment::Solid(check_color("rho_d", *color, Range::Share)?),
+        PigmentValue::Checker { checker: [even, odd], side } => Pigment::Checker {
+            even: check_color("rho_d", *even, Range::Share)?,
+            odd: check_color("rho_d", *odd, Range::Share)?,
+            side: in_range("side", *side, Range::Positive)?,
+        },
+    })
 }
 
 fn check_point(name: &str, point: DVec3) -> Result<DVec3, Problem> {

@@ -26,7 +26,7 @@ pub(super) fn triangulate(corners: &[DVec3], triangles: &mut Vec<[u32; 3]>) -> D
         return Defects::default();
     }
     let normal = newell_normal(corners);
-    let flat = flatten(corners, normal);
+    let mut flat = flatten(corners, normal);
     let non_planar = is_non_planar(corners, normal);
 
     // A simple quadrilateral always has a diagonal inside.
@@ -37,6 +37,7 @@ pub(super) fn triangulate(corners: &[DVec3], triangles: &mut Vec<[u32; 3]>) -> D
     }
     let first = triangles.len();
     if count > 4 {
+        lay_along_x(&mut flat);
         EarClipper::new(&flat).clip(triangles);
     } else {
         push_fan(count, 0, triangles);
@@ -85,6 +86,17 @@ fn flatten(corners: &[DVec3], normal: DVec3) -> Vec<DVec2> {
         }
     }
     flat
+}
+
+/// Turns a polygon that is higher than wide by a quarter: its corners then spread well along x.
+fn lay_along_x(flat: &mut [DVec2]) {
+    let (min, max) =
+        flat.iter().fold((flat[0], flat[0]), |(min, max), &p| (min.min(p), max.max(p)));
+    if max.y - min.y > max.x - min.x {
+        for p in flat {
+            *p = p.perp();
+        }
+    }
 }
 
 /// Twice the area of the triangle a b c, positive where it turns counter-clockwise.
