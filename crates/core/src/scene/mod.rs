@@ -3,11 +3,14 @@
 //! A [`Scene`] holds no resolution, sample count or file name; those are settings of a method.
 
 mod camera;
+mod framing;
 mod light;
+pub mod load;
 mod material;
 mod mesh;
 
 pub use camera::{Camera, PrimaryRays};
+pub use framing::CameraError;
 pub use light::PointLight;
 pub use material::{Material, MaterialId, Pigment};
 pub use mesh::{Face, FaceId, Mesh, Triangle};

@@ -1,0 +1,167 @@
+use std::error::Error;
+use std::fmt;
+
+use glam::DVec3;
+
+use super::{Camera, PointLight, Scene};
+use crate::Rgb;
+use crate::geometry::Sphere;
+
+impl Scene {
+    /// A sphere around every shape, centred in their bounding box; `None` in an empty scene.
+    pub fn bounding_sphere(&self) -> Option<Sphere> {
+        let points = || {
+            let vertices = self.mesh.positions.iter().map(|&p| (p, 0.0));
+            vertices.chain(self.spheres.iter().map(|s| (s.shape.center, s.shape.radius)))
+        };
+        let (min, max) = points()
+            .map(|(p, r)| (p - r, p + r))
+            .reduce(|(a, b), (min, max)| (a.min(min), b.max(max)))?;
+        let center = 0.5 * (min + max);
+        let radius = points().map(|(p, r)| (p - center).length() + r).fold(0.0, f64::max);
+        Some(Sphere { center, radius })
+    }
+
+    /// Whether anything shines: a point light, a face that emits, or the ambient term.
+    pub fn has_light(&self) -> bool {
+        !self.lights.is_empty() || self.ambient != Rgb::ZERO || self.has_area_light()
+    }
+
+    /// Whether a face of the mesh emits.
+    pub fn has_area_light(&self) -> bool {
+        self.mesh.faces.iter().any(|face| self.materials[face.material.0 as usize].emits())
+    }
+}
+
+/// Why a [`Camera`] cannot make a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CameraError {
+    /// A coordinate is NaN or infinite.
+    NotFinite,
+    /// The eye is the point looked at.
+    NoDirection,
+    /// `up` is zero or along the line of sight.
+    UpAlongView,
+    /// `fov` is not between 0 and 180 degrees.
+    Fov,
+}
+
+impl CameraError {
+    pub(super) fn problem_and_cure(self) -> (&'static str, &'static str) {
+        match self {
+            Self::NotFinite => ("the camera is not finite", "correct its coordinates"),
+            Self::NoDirection => ("look_at is the same point as eye", "move one of the two"),
+            Self::UpAlongView => ("up is zero or along the line of sight", "choose another `up`"),
+            Self::Fov => ("fov is out of range", "it must be between 0 and 180 degrees"),
+        }
+    }
+}
+
+impl fmt::Display for CameraError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (problem, cure) = self.problem_and_cure();
+        write!(f, "{problem}; {cure}")
+    }
+}
+
+impl Error for CameraError {}
+
+impl Camera {
+    /// Checks what [`Camera::primary_rays`] takes for granted.
+    ///
+    /// # Errors
+    /// When the line of sight, the vertical or the opening angle is not defined.
+    pub fn check(&self) -> Result<(), CameraError> {
+        let view = self.look_at - self.eye;
+        let across = view.cross(self.up).length();
+        if !(self.eye.is_finite() && self.look_at.is_finite() && self.up.is_finite()) {
+            Err(CameraError::NotFinite)
+        } else if view == DVec3::ZERO {
+            Err(CameraError::NoDirection)
+        } else if across <= 1e-12 * view.length() * self.up.length() {
+            Err(CameraError::UpAlongView)
+        } else if self.fov > 0.0 && self.fov < 180.0 {
+            Ok(())
+        } else {
+            Err(CameraError::Fov)
+        }
+    }
+
+    /// A camera that sees all of `bounds` in a square picture, from the front (+z), to the right
+    /// and slightly above.
+    pub fn framing(bounds: Sphere) -> Self {
+        const FOV: f64 = 40.0;
+        const FROM: DVec3 = DVec3::new(0.5, 0.35, 1.0);
+        // The lines of sight along the picture's edges touch the sphere.
+        let distance = bounds.radius / (0.5 * FOV.to_radians()).sin();
+        Self {
+            eye: bounds.center + distance * FROM.normalize(),
+            look_at: bounds.center,
+            up: DVec3::Y,
+            fov: FOV,
+        }
+    }
+}
+
+impl PointLight {
+    /// A white light to the upper left of `camera`, as far from it as a fifth of the way to what it
+    /// looks at. The camera must pass [`Camera::check`].
+    ///
+    /// There it gives what a perpendicular white surface returns as 1: its intensity grows with the
+    /// square of the distance, so that small and large models come out equally bright.
+    pub fn beside(camera: &Camera) -> Self {
+        let view = camera.look_at - camera.eye;
+        let right = view.cross(camera.up).normalize();
+        let up = right.cross(view.normalize());
+        let position = camera.eye + 0.2 * view.length() * (up - right).normalize();
+        Self { position, intensity: Rgb::splat(position.distance_squared(camera.look_at)) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::ImageSize;
+    use glam::dvec3;
+
+    #[test]
+    fn a_framed_sphere_touches_the_pictures_edges() {
+        let bounds = Sphere { center: dvec3(3.0, -2.0, 7.0), radius: 0.15 };
+        let camera = Camera::framing(bounds);
+        let rays = camera.primary_rays(ImageSize { width: 100, height: 100 });
+        for (x, y) in [(0.0, 50.0), (100.0, 50.0), (50.0, 0.0), (50.0, 100.0)] {
+            let ray = rays.through(x, y);
+            let distance = (bounds.center - ray.origin).cross(ray.direction).length();
+            assert!((distance - 0.15).abs() < 1e-14, "{distance}");
+        }
+        let from = camera.eye - bounds.center;
+        assert!(from.z > from.x && from.x > 0.0 && from.y > 0.0);
+    }
+
+    #[test]
+    fn cameras_without_a_picture_are_told() {
+        let good = Camera { eye: DVec3::Z, look_at: DVec3::ZERO, up: DVec3::Y, fov: 40.0 };
+        assert_eq!(good.check(), Ok(()));
+        let nan = Camera { eye: dvec3(0.0, f64::NAN, 0.0), ..good };
+        assert_eq!(nan.check(), Err(CameraError::NotFinite));
+        assert_eq!(Camera { eye: DVec3::ZERO, ..good }.check(), Err(CameraError::NoDirection));
+        for up in [DVec3::ZERO, DVec3::Z, -2.0 * DVec3::Z] {
+            assert_eq!(Camera { up, ..good }.check(), Err(CameraError::UpAlongView));
+        }
+        for fov in [0.0, -1.0, 180.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(Camera { fov, ..good }.check(), Err(CameraError::Fov));
+        }
+    }
+
+    #[test]
+    fn brightness_does_not_depend_on_size() {
+        for radius in [0.15, 6.0] {
+            let camera = Camera::framing(Sphere { center: DVec3::ONE, radius });
+            let light = PointLight::beside(&camera);
+            let received = light.intensity / light.position.distance_squared(DVec3::ONE);
+            assert!((received - 1.0).abs().max_element() < 1e-14);
+            let aside = light.position.distance(camera.eye) / camera.eye.distance(DVec3::ONE);
+            assert!((aside - 0.2).abs() < 1e-14);
+        }
+    }
+}

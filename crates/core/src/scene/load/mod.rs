@@ -1,0 +1,186 @@
+//! Scenes from files: `.toml`, the course's own format, and `.obj` with its materials.
+//!
+//! Every refusal is one line, `file:line: what is wrong; cure`. What can be drawn although it is odd
+//! is drawn, with a counted [`Warning`].
+//!
+//! # The format of a scene file
+#![doc = concat!("```toml\n", include_str!("format.toml"), "```")]
+
+mod check;
+mod clean;
+mod mtl;
+mod obj;
+mod report;
+mod scene_toml;
+mod statements;
+mod tables;
+#[cfg(test)]
+mod tests;
+mod triangulate;
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+use glam::DVec3;
+
+use report::Warnings;
+pub use report::{LoadError, Warning, WarningKind};
+
+use super::{Camera, Mesh, PointLight, Scene};
+use crate::Rgb;
+
+/// The most vertices, and the most triangles, of a scene: both are numbered in 32 bits.
+pub const MAX_COUNT: usize = u32::MAX as usize;
+
+/// The most corners of one face. Cutting one of this size takes seconds at worst.
+pub const MAX_CORNERS: usize = 100_000;
+
+/// The largest coordinate, in absolute value. Products of six of them are still finite.
+pub const MAX_COORDINATE: f64 = 1e50;
+
+/// A scene and what there is to say about its files.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loaded {
+    /// The scene, ready to be drawn.
+    pub scene: Scene,
+    /// What was ignored, replaced or looks wrong, one entry per file and kind.
+    pub warnings: Vec<Warning>,
+    /// The size of the scene.
+    pub counts: Counts,
+}
+
+/// The size of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Counts {
+    /// Vertices of the mesh that a face uses.
+    pub vertices: usize,
+    /// Polygons.
+    pub faces: usize,
+    /// Triangles the polygons were cut into.
+    pub triangles: usize,
+    /// Triangles of no area among them.
+    pub zero_area: usize,
+    /// Spheres.
+    pub spheres: usize,
+}
+
+/// Reads a scene; the extension decides how.
+///
+/// An `.obj` is framed by [`Camera::framing`] and, unless one of its faces emits, lit by
+/// [`PointLight::beside`] the camera, with a small ambient term. Faces without a material are matte
+/// light grey.
+///
+/// # Errors
+/// When a file cannot be read, its kind is unknown, its content is wrong, or nothing is to be drawn.
+pub fn load(path: &Path) -> Result<Loaded, LoadError> {
+    load_with(path, &open)
+}
+
+/// Reads a scene from the text of a `.toml`, such as one embedded by `include_str!`. `name` stands
+/// for the file in messages; the meshes it names are looked for in `folder`.
+///
+/// ```
+/// use std::path::Path;
+///
+/// let text = "
+///     ambient = 0.1
+///     material.red.rho_d = [0.8, 0.1, 0.1]
+///     [[sphere]]
+///     center = [0, 0, 0]
+///     radius = 1
+///     material = 'red'
+/// ";
+/// let loaded = lancer_core::scene::load::parse_scene(text, "ball.toml", Path::new(""))?;
+/// assert_eq!(loaded.scene.spheres.len(), 1);
+/// # Ok::<(), lancer_core::scene::load::LoadError>(())
+/// ```
+///
+/// # Errors
+/// As [`load`].
+pub fn parse_scene(text: &str, name: &str, folder: &Path) -> Result<Loaded, LoadError> {
+    scene_toml::parse(text, name, folder, &open)
+}
+
+/// Opens a file; in tests, an entry of a table.
+type Open<'a> = &'a dyn Fn(&Path) -> io::Result<Box<dyn Read>>;
+
+fn open(path: &Path) -> io::Result<Box<dyn Read>> {
+    Ok(Box::new(File::open(path)?))
+}
+
+fn load_with(path: &Path, open: Open<'_>) -> Result<Loaded, LoadError> {
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let file = || path.display().to_string();
+    match extension.as_str() {
+        "obj" => load_obj(path, open),
+        "toml" => {
+            let unreadable = |reason| LoadError::Unreadable { file: file(), reason };
+            let mut bytes = Vec::new();
+            open(path).and_then(|mut source| source.read_to_end(&mut bytes)).map_err(unreadable)?;
+            let text = String::from_utf8(bytes).map_err(|_| {
+                LoadError::at(&file(), None, "the text is not UTF-8", "save the file as UTF-8")
+            })?;
+            let folder = path.parent().unwrap_or(Path::new(""));
+            scene_toml::parse(text.trim_start_matches('\u{feff}'), &file(), folder, open)
+        }
+        _ => Err(LoadError::UnknownKind { file: file() }),
+    }
+}
+
+fn load_obj(path: &Path, open: Open<'_>) -> Result<Loaded, LoadError> {
+    let mut warnings = Warnings::default();
+    let (mesh, materials) = obj::read_obj(path, open, &mut warnings)?;
+    let mut scene = empty_scene();
+    (scene.mesh, scene.materials) = (mesh, materials);
+    scene.ambient = Rgb::splat(0.05);
+    scene.background = Rgb::new(0.2, 0.25, 0.3);
+    frame(&mut scene, &path.display().to_string())?;
+    if !scene.has_area_light() {
+        scene.lights.push(PointLight::beside(&scene.camera));
+    }
+    Ok(finish(scene, warnings))
+}
+
+/// A scene to be filled; its camera has no meaning yet.
+fn empty_scene() -> Scene {
+    Scene {
+        camera: Camera { eye: DVec3::Z, look_at: DVec3::ZERO, up: DVec3::Y, fov: 40.0 },
+        mesh: Mesh::default(),
+        spheres: Vec::new(),
+        materials: Vec::new(),
+        lights: Vec::new(),
+        ambient: Rgb::ZERO,
+        background: Rgb::ZERO,
+    }
+}
+
+/// Points the camera at the whole scene.
+fn frame(scene: &mut Scene, file: &str) -> Result<(), LoadError> {
+    let bounds = scene.bounding_sphere().filter(|bounds| bounds.radius > 0.0).ok_or_else(|| {
+        let problem = "nothing to draw: all vertices are at one point";
+        LoadError::at(file, None, problem, "check the vertices")
+    })?;
+    scene.camera = Camera::framing(bounds);
+    Ok(())
+}
+
+fn finish(scene: Scene, warnings: Warnings) -> Loaded {
+    let mesh = &scene.mesh;
+    let counts = Counts {
+        vertices: mesh.positions.len(),
+        faces: mesh.faces.len(),
+        triangles: mesh.triangles.len(),
+        zero_area: (0..mesh.triangles.len()).filter(|&i| is_zero_area(mesh.corners(i))).count(),
+        spheres: scene.spheres.len(),
+    };
+    Loaded { scene, warnings: warnings.into_vec(), counts }
+}
+
+const DEFAULT_GREY: Rgb = Rgb::splat(0.75);
+
+/// Whether a triangle's corners are on one line, up to the rounding of their coordinates.
+fn is_zero_area([a, b, c]: [DVec3; 3]) -> bool {
+    let (u, v) = (b - a, c - a);
+    u.cross(v).length() <= 4.0 * f64::EPSILON * u.length() * v.length()
+}

@@ -1,0 +1,246 @@
+use std::io::Read;
+use std::path::Path;
+
+use glam::DVec3;
+
+use super::check::{excerpt, is_in_space, within_limit};
+use super::clean::Lines;
+use super::mtl::Library;
+use super::report::{LoadError, WarningKind, Warnings};
+use super::statements::{Record, Run, Statements};
+use super::triangulate::triangulate;
+use super::{DEFAULT_GREY, MAX_COORDINATE, MAX_COUNT, Open, is_zero_area};
+use crate::scene::{Face, FaceId, Material, MaterialId, Mesh, Triangle};
+
+/// Reads an OBJ file and its material libraries.
+///
+/// tobj reads the numbers. Everything a line says beyond them (materials, groups, libraries) is
+/// kept from it and recorded, so that it returns one model whose faces share their vertices.
+pub(super) fn read_obj(
+    path: &Path,
+    open: Open<'_>,
+    warnings: &mut Warnings,
+) -> Result<(Mesh, Vec<Material>), LoadError> {
+    let file = path.display().to_string();
+    let source = Source { path, file: &file, open };
+    let mut statements = Statements::new(&file, source.open()?, warnings)?;
+    let options = tobj::LoadOptions { single_index: false, ..Default::default() };
+    // Libraries are recorded instead of handed to tobj, so its loader of materials is never called.
+    let parsed = tobj::load_obj_buf(&mut statements, &options, |_| Ok(Default::default()));
+    let model = match (statements.error.take(), parsed) {
+        (Some(error), _) => return Err(error),
+        (None, Err(error)) => return Err(source.explain(error, &statements)),
+        (None, Ok((models, _))) => models.into_iter().next().map(|m| m.mesh).unwrap_or_default(),
+    };
+    let record = statements.record;
+    if model.indices.is_empty() {
+        return Err(LoadError::at(
+            &file,
+            None,
+            "nothing to draw: no face with 3 corners",
+            "check that this is an OBJ file with `v` and `f` lines",
+        ));
+    }
+    if !model.vertex_color.is_empty() {
+        warnings.add(&file, None, WarningKind::VertexColors);
+    }
+    let library = Library::of_model(path, &record.libraries, open, warnings)?;
+    let (materials, run_materials) = resolve_materials(&file, library, &record, warnings);
+    let mesh = source.build_mesh(&model, &record.runs, &run_materials, warnings)?;
+    Ok((mesh, materials))
+}
+
+/// The material of each run. Runs without one get a default material at the end of the list.
+fn resolve_materials(
+    file: &str,
+    library: Library,
+    record: &Record,
+    warnings: &mut Warnings,
+) -> (Vec<Material>, Vec<MaterialId>) {
+    let named: Vec<Option<MaterialId>> =
+        record.material_names.iter().map(|(name, _)| library.find(name)).collect();
+    for ((_, line), id) in record.material_names.iter().zip(&named) {
+        if id.is_none() {
+            warnings.add(file, *line, WarningKind::UnknownMaterial);
+        }
+    }
+    let mut materials = library.materials;
+    let found: Vec<Option<MaterialId>> =
+        record.runs.iter().map(|run| run.material.and_then(|name| named[name])).collect();
+    let default = MaterialId(materials.len() as u32);
+    if found.contains(&None) {
+        materials.push(Material::matte(DEFAULT_GREY));
+    }
+    (materials, found.into_iter().map(|id| id.unwrap_or(default)).collect())
+}
+
+/// An OBJ file that can be read again, to find the line of what turned out wrong.
+struct Source<'a> {
+    path: &'a Path,
+    file: &'a str,
+    open: Open<'a>,
+}
+
+impl<'a> Source<'a> {
+    fn open(&self) -> Result<Box<dyn Read + 'a>, LoadError> {
+        (self.open)(self.path)
+            .map_err(|reason| LoadError::Unreadable { file: self.file.to_owned(), reason })
+    }
+
+    /// tobj's error as ours: it stopped at the line it was given last, or at the end for colours.
+    fn explain(&self, error: tobj::LoadError, statements: &Statements<'_, '_>) -> LoadError {
+        if error == tobj::LoadError::FaceColorOutOfBounds {
+            let is_grey = |keyword: &str, numbers: &str| {
+                keyword == "v" && numbers.split_whitespace().nth(5).is_none()
+            };
+            let problem = "this vertex has no colour and others have one";
+            let cure = "give every `v` three numbers, or every `v` six";
+            return LoadError::at(self.file, self.find_line(is_grey), problem, cure);
+        }
+        let line = excerpt(&statements.line);
+        let (problem, cure) = if error == tobj::LoadError::ScalingByZeroError {
+            (format!("`{line}` has the weight 0"), "remove the fourth number")
+        } else {
+            let cure = "write three numbers, with a decimal point";
+            (format!("`{line}` cannot be read"), cure)
+        };
+        LoadError::at(self.file, statements.number, problem, cure)
+    }
+
+    /// The first line whose keyword and numbers are `wanted`.
+    fn find_line(&self, mut wanted: impl FnMut(&str, &str) -> bool) -> Option<usize> {
+        let mut lines = Lines::new(self.file, self.open().ok()?).ok()?;
+        while let Ok(Some((number, line))) = lines.next() {
+            let statement = line.trim_start();
+            if let Some((keyword, rest)) = statement.split_once(char::is_whitespace)
+                && wanted(keyword, rest.split('#').next().unwrap_or_default())
+            {
+                return Some(number);
+            }
+        }
+        None
+    }
+
+    fn line_of_vector(&self, wanted: &str, is_bad: impl Fn(DVec3) -> bool) -> Option<usize> {
+        self.find_line(|keyword, numbers| {
+            let numbers: Vec<f64> =
+                numbers.split_whitespace().map_while(|word| word.parse().ok()).collect();
+            let weight = if let [_, _, _, weight] = numbers[..] { weight } else { 1.0 };
+            keyword == wanted && numbers.len() >= 3 && is_bad(DVec3::from_slice(&numbers) / weight)
+        })
+    }
+
+    fn line_of_face(&self, face: usize) -> Option<usize> {
+        let mut seen = 0;
+        self.find_line(|keyword, corners| {
+            seen += usize::from(keyword == "f" && corners.split_whitespace().nth(2).is_some());
+            seen > face
+        })
+    }
+
+    fn build_mesh(
+        &self,
+        model: &tobj::Mesh,
+        runs: &[Run],
+        materials: &[MaterialId],
+        warnings: &mut Warnings,
+    ) -> Result<Mesh, LoadError> {
+        let positions: Vec<DVec3> =
+            model.positions.chunks_exact(3).map(DVec3::from_slice).collect();
+        if !positions.iter().copied().all(is_in_space) {
+            return Err(LoadError::at(
+                self.file,
+                self.line_of_vector("v", |p| !is_in_space(p)),
+                format!("a coordinate is not finite, or beyond ±{MAX_COORDINATE:e}"),
+                "correct the number",
+            ));
+        }
+        let any_smooth = runs.iter().any(|run| run.smooth);
+        let normals = if any_smooth { self.unit_normals(&model.normals)? } else { Vec::new() };
+
+        let faces = if model.face_arities.is_empty() {
+            model.indices.len() / 3
+        } else {
+            model.face_arities.len()
+        };
+        let triangles = model.indices.len() - 2 * faces;
+        within_limit(triangles, "triangles", MAX_COUNT, "split the model")
+            .map_err(|(problem, cure)| LoadError::at(self.file, None, problem, cure))?;
+        let mut mesh = Mesh { positions, normals, ..Mesh::default() };
+        mesh.faces.reserve_exact(faces);
+        mesh.triangles.reserve_exact(triangles);
+        if any_smooth {
+            mesh.smooth.reserve_exact(triangles);
+        }
+
+        let mut findings = Findings::default();
+        let (mut polygon, mut parts) = (Vec::new(), Vec::new());
+        let (mut start, mut run) = (0, 0);
+        for face in 0..faces {
+            let end = start + model.face_arities.get(face).map_or(3, |&arity| arity as usize);
+            while runs.get(run + 1).is_some_and(|next| next.first_face <= face) {
+                run += 1;
+            }
+            let corners = &model.indices[start..end];
+            polygon.clear();
+            polygon.extend(corners.iter().map(|&vertex| mesh.positions[vertex as usize]));
+            parts.clear();
+            let defects = triangulate(&polygon, &mut parts);
+            let is_flat = |part: &&[u32; 3]| is_zero_area(part.map(|i| polygon[i as usize]));
+            for (kind, count) in [
+                (WarningKind::SelfIntersecting, usize::from(defects.self_intersecting)),
+                (WarningKind::NonPlanar, usize::from(defects.non_planar)),
+                (WarningKind::ZeroArea, parts.iter().filter(is_flat).count()),
+            ] {
+                findings.note(kind, face, count);
+            }
+
+            mesh.faces.push(Face { material: materials[run] });
+            let face = FaceId(face as u32);
+            mesh.triangles.extend(
+                parts
+                    .iter()
+                    .map(|part| Triangle { vertices: part.map(|i| corners[i as usize]), face }),
+            );
+            if any_smooth {
+                let corner_normals = |part: &[u32; 3]| {
+                    runs[run].smooth.then(|| part.map(|i| model.normal_indices[start + i as usize]))
+                };
+                mesh.smooth.extend(parts.iter().map(corner_normals));
+            }
+            start = end;
+        }
+        for (kind, face, count) in findings.0 {
+            warnings.add_many(self.file, self.line_of_face(face), kind, count);
+        }
+        Ok(mesh)
+    }
+
+    fn unit_normals(&self, numbers: &[f64]) -> Result<Vec<DVec3>, LoadError> {
+        let unit = |n: &[f64]| DVec3::from_slice(n).try_normalize();
+        numbers.chunks_exact(3).map(unit).collect::<Option<_>>().ok_or_else(|| {
+            LoadError::at(
+                self.file,
+                self.line_of_vector("vn", |n| n.try_normalize().is_none()),
+                "a normal is zero or not finite",
+                "correct it, or leave the normals out for flat faces",
+            )
+        })
+    }
+}
+
+/// Findings about faces: their kind, the first face, how many.
+#[derive(Default)]
+struct Findings(Vec<(WarningKind, usize, usize)>);
+
+impl Findings {
+    fn note(&mut self, kind: WarningKind, face: usize, count: usize) {
+        if count == 0 {
+            return;
+        }
+        match self.0.iter_mut().find(|finding| finding.0 == kind) {
+            Some(finding) => finding.2 += count,
+            None => self.0.push((kind, face, count)),
+        }
+    }
+}

@@ -1,0 +1,163 @@
+use std::collections::HashMap;
+use std::fmt;
+use std::io;
+
+/// Why a scene could not be read. Displays as one line: `file:line: what is wrong; cure`.
+#[derive(Debug, thiserror::Error)]
+pub enum LoadError {
+    /// The system refused to open or read a file.
+    #[error("{file}: {reason}; check the path and its permissions")]
+    Unreadable {
+        /// The file as it was asked for.
+        file: String,
+        /// The system's answer.
+        reason: io::Error,
+    },
+    /// The extension names no kind of scene.
+    #[error("{file}: unknown kind of scene; the known ones are .obj and .toml")]
+    UnknownKind {
+        /// The file as it was asked for.
+        file: String,
+    },
+    /// The content is wrong.
+    #[error("{}: {problem}; {cure}", place(file, *line))]
+    Invalid {
+        /// The file the content stands in.
+        file: String,
+        /// The line, from 1, where one can be named.
+        line: Option<usize>,
+        /// What is wrong.
+        problem: String,
+        /// What to do about it.
+        cure: String,
+    },
+}
+
+impl LoadError {
+    pub(super) fn at(
+        file: &str,
+        line: impl Into<Option<usize>>,
+        problem: impl Into<String>,
+        cure: impl Into<String>,
+    ) -> Self {
+        Self::Invalid {
+            file: file.to_owned(),
+            line: line.into(),
+            problem: problem.into(),
+            cure: cure.into(),
+        }
+    }
+}
+
+fn place(file: &str, line: Option<usize>) -> String {
+    line.map_or_else(|| file.to_owned(), |line| format!("{file}:{line}"))
+}
+
+/// What was ignored, replaced, or looks wrong without stopping the scene from being drawn.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum WarningKind {
+    /// A statement of this keyword describes what the course has not, such as a texture.
+    Ignored(&'static str),
+    /// A statement that the format does not know: a typing error, or a foreign extension.
+    UnknownStatement,
+    /// Lines, points, curves and surfaces of an OBJ: only its faces are drawn.
+    NotAFace,
+    /// Vertex colours of an OBJ; colours come from materials.
+    VertexColors,
+    /// A material library that does not exist or cannot be opened.
+    MissingLibrary,
+    /// `usemtl` names a material that no library defines.
+    UnknownMaterial,
+    /// A face with fewer than three corners.
+    TooFewCorners,
+    /// A face with normals at some of its corners only.
+    PartialNormals,
+    /// A polygon that crosses itself, so that its area has no meaning.
+    SelfIntersecting,
+    /// A polygon whose corners are far from any plane.
+    NonPlanar,
+    /// A triangle of no area. It is kept: it closes the seam between neighbours of unequal detail.
+    ZeroArea,
+    /// Nothing in the scene shines.
+    NoLight,
+}
+
+impl fmt::Display for WarningKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Ignored(keyword) => write!(f, "`{keyword}` is ignored: the course has no such effect"),
+            Self::UnknownStatement => f.write_str("unknown statement ignored"),
+            Self::NotAFace => f.write_str("lines, points, curves and surfaces ignored: only faces are drawn"),
+            Self::VertexColors => f.write_str("vertex colours ignored: colours come from materials"),
+            Self::MissingLibrary => {
+                f.write_str("material library cannot be opened; its materials become light grey")
+            }
+            Self::UnknownMaterial => {
+                f.write_str("material not defined in any library; its faces become light grey")
+            }
+            Self::TooFewCorners => f.write_str("face with fewer than 3 corners left out"),
+            Self::PartialNormals => f.write_str("face with normals at some corners only is drawn flat"),
+            Self::SelfIntersecting => f.write_str("polygon crosses itself; split it to get the right area"),
+            Self::NonPlanar => f.write_str("polygon is not planar; split it into triangles"),
+            Self::ZeroArea => f.write_str("triangle of zero area (kept)"),
+            Self::NoLight => f.write_str(
+                "no light: the picture will be black; add a [[light]], a material with emission or an ambient",
+            ),
+        }
+    }
+}
+
+/// All findings of one kind in one file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Warning {
+    /// The file they were found in.
+    pub file: String,
+    /// The line of the first, from 1, where one can be named.
+    pub line: Option<usize>,
+    /// What was found.
+    pub kind: WarningKind,
+    /// How often.
+    pub count: usize,
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", place(&self.file, self.line), self.kind)?;
+        if self.count > 1 {
+            write!(f, " ({} times, this is the first)", self.count)
+        } else {
+            Ok(())
+        }
+    }
+}
+
+/// Counts findings, one [`Warning`] per file and kind in order of first appearance.
+#[derive(Default)]
+pub(super) struct Warnings {
+    list: Vec<Warning>,
+    index: HashMap<(String, WarningKind), usize>,
+}
+
+impl Warnings {
+    pub fn add(&mut self, file: &str, line: impl Into<Option<usize>>, kind: WarningKind) {
+        self.add_many(file, line, kind, 1);
+    }
+
+    pub fn add_many(
+        &mut self,
+        file: &str,
+        line: impl Into<Option<usize>>,
+        kind: WarningKind,
+        count: usize,
+    ) {
+        let index = *self.index.entry((file.to_owned(), kind.clone())).or_insert_with(|| {
+            self.list.push(Warning { file: file.to_owned(), line: line.into(), kind, count: 0 });
+            self.list.len() - 1
+        });
+        self.list[index].count += count;
+    }
+
+    pub fn into_vec(self) -> Vec<Warning> {
+        self.list
+    }
+}

@@ -1,0 +1,337 @@
+use std::ops::Range as Span;
+use std::path::Path;
+
+use glam::{DAffine3, DMat3, DVec3};
+use toml::Spanned;
+
+use super::check::{Problem, Range, excerpt, in_range, is_in_space, within_limit};
+use super::report::{LoadError, WarningKind, Warnings};
+use super::tables::{
+    CameraTable, MaterialTable, MeshTable, PigmentValue, SceneFile, SphereTable, Triple,
+};
+use super::triangulate::triangulate;
+use super::{
+    Loaded, MAX_COORDINATE, MAX_CORNERS, MAX_COUNT, Open, empty_scene, finish, frame, is_zero_area,
+    obj,
+};
+use crate::Rgb;
+use crate::geometry::Sphere;
+use crate::scene::{
+    Camera, CameraError, Material, MaterialId, Mesh, Pigment, PointLight, Scene, SphereObject,
+};
+
+/// See [`super::parse_scene`].
+pub(super) fn parse(
+    text: &str,
+    name: &str,
+    folder: &Path,
+    open: Open<'_>,
+) -> Result<Loaded, LoadError> {
+    let source = Source { text, name };
+    let file: SceneFile = toml::from_str(text).map_err(|error| source.explain(&error))?;
+    let mut warnings = Warnings::default();
+    let mut scene = empty_scene();
+    scene.ambient = source.color_or_black("ambient", &file.ambient, Range::NotNegative)?;
+    scene.background = source.color_or_black("background", &file.background, Range::NotNegative)?;
+    for light in &file.light {
+        scene.lights.push(PointLight {
+            position: source.point("position", &light.position)?,
+            intensity: source.color("intensity", &light.intensity, Range::NotNegative)?,
+        });
+    }
+    scene.materials =
+        file.material.values().map(|table| source.material(table)).collect::<Result<_, _>>()?;
+    let names: Vec<&str> = file.material.keys().map(String::as_str).collect();
+    for table in &file.polygon {
+        let material = source.material_id(&names, &table.material)?;
+        source.add_polygon(&mut scene.mesh, &table.vertices, material)?;
+    }
+    for table in &file.mesh {
+        let material =
+            table.material.as_ref().map(|name| source.material_id(&names, name)).transpose()?;
+        source.add_mesh(&mut scene, table, material, folder, open, &mut warnings)?;
+    }
+    for table in &file.sphere {
+        let material = source.material_id(&names, &table.material)?;
+        let sphere = source.sphere(table, scene.materials[material.0 as usize], material)?;
+        scene.spheres.push(sphere);
+    }
+    if scene.mesh.triangles.is_empty() && scene.spheres.is_empty() {
+        let cure = "add a [[sphere]], [[mesh]] or [[polygon]]";
+        return Err(LoadError::at(name, None, "nothing to draw", cure));
+    }
+    match &file.camera {
+        Some(table) => scene.camera = source.camera(table)?,
+        None => frame(&mut scene, name)?,
+    }
+    if !scene.has_light() {
+        warnings.add(name, None, WarningKind::NoLight);
+    }
+    Ok(finish(scene, warnings))
+}
+
+/// The text of a scene file, to name lines in it.
+struct Source<'a> {
+    text: &'a str,
+    name: &'a str,
+}
+
+impl Source<'_> {
+    fn error(
+        &self,
+        span: Span<usize>,
+        (problem, cure): (impl Into<String>, impl Into<String>),
+    ) -> LoadError {
+        let before = self.text.as_bytes().get(..span.start).unwrap_or_default();
+        let line = 1 + before.iter().filter(|&&byte| byte == b'\n').count();
+        LoadError::at(self.name, line, problem, cure)
+    }
+
+    /// A refusal of the parser, with the nearest of the known keys where one is mistyped.
+    fn explain(&self, error: &toml::de::Error) -> LoadError {
+        let message = error.message().replace('\n', ", ");
+        let mut quoted = message.split('`').skip(1).step_by(2);
+        let cure = match quoted.next() {
+            Some(key) if message.starts_with("unknown field") => nearest(key, quoted),
+            Some(_) if message.starts_with("missing field") => "add it".to_owned(),
+            _ => "correct the value or the syntax".to_owned(),
+        };
+        let problem = message.split(", expected one of").next().unwrap_or_default();
+        self.error(error.span().unwrap_or_default(), (problem, cure))
+    }
+
+    fn number(&self, name: &str, value: &Spanned<f64>, range: Range) -> Result<f64, LoadError> {
+        in_range(name, *value.get_ref(), range).map_err(|problem| self.error(value.span(), problem))
+    }
+
+    fn color(&self, name: &str, value: &Spanned<Triple>, range: Range) -> Result<Rgb, LoadError> {
+        check_color(name, *value.get_ref(), range)
+            .map_err(|problem| self.error(value.span(), problem))
+    }
+
+    fn color_or_black(
+        &self,
+        name: &str,
+        value: &Option<Spanned<Triple>>,
+        range: Range,
+    ) -> Result<Rgb, LoadError> {
+        value.as_ref().map_or(Ok(Rgb::ZERO), |value| self.color(name, value, range))
+    }
+
+    fn point(&self, name: &str, value: &Spanned<[f64; 3]>) -> Result<DVec3, LoadError> {
+        check_point(name, (*value.get_ref()).into())
+            .map_err(|problem| self.error(value.span(), problem))
+    }
+
+    fn camera(&self, table: &CameraTable) -> Result<Camera, LoadError> {
+        let camera = Camera {
+            eye: self.point("eye", &table.eye)?,
+            look_at: self.point("look_at", &table.look_at)?,
+            up: table.up.as_ref().map_or(Ok(DVec3::Y), |up| self.point("up", up))?,
+            fov: *table.fov.get_ref(),
+        };
+        camera.check().map_err(|error| {
+            let span = match error {
+                CameraError::NotFinite | CameraError::NoDirection => table.look_at.span(),
+                CameraError::UpAlongView => {
+                    table.up.as_ref().map_or(table.look_at.span(), Spanned::span)
+                }
+                CameraError::Fov => table.fov.span(),
+            };
+            self.error(span, error.problem_and_cure())
+        })?;
+        Ok(camera)
+    }
+
+    fn material(&self, table: &MaterialTable) -> Result<Material, LoadError> {
+        let share = |name, value| self.color_or_black(name, value, Range::Share);
+        let number = |name, value: &Option<Spanned<f64>>, range| {
+            value.as_ref().map_or(Ok(1.0), |value| self.number(name, value, range))
+        };
+        let black = Ok(Pigment::Solid(Rgb::ZERO));
+        Ok(Material {
+            rho_d: table.rho_d.as_ref().map_or(black, |value| {
+                check_pigment(value.get_ref()).map_err(|problem| self.error(value.span(), problem))
+            })?,
+            rho_s: share("rho_s", &table.rho_s)?,
+            shininess: number("shininess", &table.shininess, Range::NotNegative)?,
+            k_s: share("k_s", &table.k_s)?,
+            k_t: share("k_t", &table.k_t)?,
+            refractive_index: number("refractive_index", &table.refractive_index, Range::Positive)?,
+            emission: self.color_or_black("emission", &table.emission, Range::NotNegative)?,
+        })
+    }
+
+    fn material_id(&self, names: &[&str], name: &Spanned<String>) -> Result<MaterialId, LoadError> {
+        let wanted = name.get_ref().as_str();
+        names.iter().position(|&known| known == wanted).map(|i| MaterialId(i as u32)).ok_or_else(
+            || {
+                let problem = format!("unknown material `{}`", excerpt(wanted));
+                self.error(name.span(), (problem, nearest(wanted, names.iter().copied())))
+            },
+        )
+    }
+
+    fn sphere(
+        &self,
+        table: &SphereTable,
+        material: Material,
+        id: MaterialId,
+    ) -> Result<SphereObject, LoadError> {
+        if material.emits() {
+            let problem = "a sphere cannot emit: area lights are faces";
+            let cure = "use a [[polygon]] for the light, or a material without emission";
+            return Err(self.error(table.material.span(), (problem, cure)));
+        }
+        let center = self.point("center", &table.center)?;
+        let radius = self.number("radius", &table.radius, Range::Positive)?;
+        check_point("center + radius", center + radius)
+            .map_err(|problem| self.error(table.radius.span(), problem))?;
+        Ok(SphereObject { shape: Sphere { center, radius }, material: id })
+    }
+
+    fn add_polygon(
+        &self,
+        mesh: &mut Mesh,
+        vertices: &Spanned<Vec<[f64; 3]>>,
+        material: MaterialId,
+    ) -> Result<(), LoadError> {
+        let invalid = |problem: Problem| self.error(vertices.span(), problem);
+        let corners: Vec<DVec3> = vertices.get_ref().iter().map(|&p| p.into()).collect();
+        for &corner in &corners {
+            check_point("vertices", corner).map_err(invalid)?;
+        }
+        within_limit(corners.len(), "corners in one polygon", MAX_CORNERS, "split it")
+            .map_err(invalid)?;
+        if corners.len() < 3 {
+            let problem = format!("a polygon with {} corners", corners.len());
+            return Err(invalid((problem, "give it at least 3")));
+        }
+        let mut parts = Vec::new();
+        let defects = triangulate(&corners, &mut parts);
+        let refuse = |problem: &str, cure| Err(invalid((problem.to_owned(), cure)));
+        if defects.self_intersecting {
+            return refuse("the polygon crosses itself", "order the vertices along its border");
+        }
+        if defects.non_planar {
+            return refuse("the polygon is not planar", "split it into triangles");
+        }
+        if parts.iter().all(|part| is_zero_area(part.map(|i| corners[i as usize]))) {
+            return refuse("the polygon has no area", "give it 3 corners that are not on one line");
+        }
+        let first = mesh.positions.len();
+        within_limit(first + corners.len(), "vertices", MAX_COUNT, "remove polygons")
+            .map_err(invalid)?;
+        mesh.positions.extend(corners);
+        let parts: Vec<[u32; 3]> =
+            parts.iter().map(|part| part.map(|i| i + first as u32)).collect();
+        mesh.push_face(material, &parts);
+        Ok(())
+    }
+
+    fn add_mesh(
+        &self,
+        scene: &mut Scene,
+        table: &MeshTable,
+        material: Option<MaterialId>,
+        folder: &Path,
+        open: Open<'_>,
+        warnings: &mut Warnings,
+    ) -> Result<(), LoadError> {
+        let transform = self.transform(table)?;
+        let path = folder.join(table.obj.get_ref());
+        let (mut mesh, materials) =
+            obj::read_obj(&path, open, warnings).map_err(|error| match error {
+                LoadError::Unreadable { file, reason } => {
+                    let cure = "mesh files are looked for from the scene's folder";
+                    self.error(table.obj.span(), (format!("{file}: {reason}"), cure))
+                }
+                other => other,
+            })?;
+        let invalid = |problem: Problem| self.error(table.obj.span(), problem);
+        let vertices = scene.mesh.positions.len() + mesh.positions.len();
+        let triangles = scene.mesh.triangles.len() + mesh.triangles.len();
+        within_limit(vertices, "vertices", MAX_COUNT, "use smaller meshes").map_err(invalid)?;
+        within_limit(triangles, "triangles", MAX_COUNT, "use smaller meshes").map_err(invalid)?;
+        for &p in &mesh.positions {
+            check_point("a vertex", transform.transform_point3(p)).map_err(invalid)?;
+        }
+        let first_material = match material {
+            Some(MaterialId(material)) => {
+                for face in &mut mesh.faces {
+                    face.material = MaterialId(0);
+                }
+                material
+            }
+            None => {
+                let first = scene.materials.len() as u32;
+                scene.materials.extend(materials);
+                first
+            }
+        };
+        scene.mesh.append(&mesh, transform, first_material);
+        Ok(())
+    }
+
+    /// Scale, then turn about x, y and z in this order, then move.
+    fn transform(&self, table: &MeshTable) -> Result<DAffine3, LoadError> {
+        let vector = |name, value: &Option<Spanned<[f64; 3]>>| {
+            value.as_ref().map_or(Ok(DVec3::ZERO), |value| self.point(name, value))
+        };
+        let scale = table.scale.as_ref().map_or(Ok(DVec3::ONE), |value| {
+            let scale = value.get_ref().vector();
+            let is_good = |s: f64| (1.0 / MAX_COORDINATE..=MAX_COORDINATE).contains(&s.abs());
+            if scale.to_array().into_iter().all(is_good) {
+                Ok(scale)
+            } else {
+                let cure = "it must be finite and not zero";
+                Err(self.error(value.span(), (format!("scale is {scale}"), cure)))
+            }
+        })?;
+        let [x, y, z] = vector("rotate", &table.rotate)?.to_array().map(f64::to_radians);
+        let turn =
+            DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
+        Ok(DAffine3 {
+            matrix3: turn * DMat3::from_diagonal(scale),
+            translation: vector("translate", &table.translate)?,
+        })
+    }
+}
+
+fn check_color(name: &str, color: Triple, range: Range) -> Result<Rgb, Problem> {
+    let color = color.vector();
+    for channel in color.to_array() {
+        in_range(name, channel, range)?;
+    }
+    Ok(color)
+}
+
+fn check_pigment(value: &PigmentValue) -> Result<Pigment, Problem> {
+    Ok(match value {
+        PigmentValue::Solid(color) => Pigment::Solid(check_color("rho_d", *color, Range::Share)?),
+        PigmentValue::Checker { checker: [even, odd], side } => Pigment::Checker {
+            even: check_color("rho_d", *even, Range::Share)?,
+            odd: check_color("rho_d", *odd, Range::Share)?,
+            side: in_range("side", *side, Range::Positive)?,
+        },
+    })
+}
+
+fn check_point(name: &str, point: DVec3) -> Result<DVec3, Problem> {
+    if is_in_space(point) {
+        Ok(point)
+    } else {
+        let problem = format!("{name} is {:?}", point.to_array());
+        Err((problem, "coordinates must be finite and below 1e50"))
+    }
+}
+
+/// The cure for a name that is not known: the known ones, the most similar first.
+fn nearest<'a>(wanted: &str, known: impl Iterator<Item = &'a str>) -> String {
+    let mut known: Vec<&str> = known.collect();
+    known.sort_by_key(|name| strsim::damerau_levenshtein(wanted, name));
+    match known[..] {
+        [] => "no such name is defined".to_owned(),
+        _ => format!("the known ones are {}", known.join(", ")),
+    }
+}

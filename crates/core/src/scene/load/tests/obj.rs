@@ -1,0 +1,288 @@
+use std::fmt::Write;
+
+use glam::dvec3;
+
+use super::*;
+use crate::scene::FaceId;
+
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+/// One triangle (0,0,0) (1,0,0) (0,1,0), whatever the writing.
+#[test]
+fn every_way_to_write_a_triangle() {
+    let ways: [&[u8]; 15] = [
+        TRIANGLE.as_bytes(),
+        b"\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3",
+        b"v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r",
+        b"v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3\r\n",
+        b"\tv\t0 0  0 \n  v 1 0 0\n\nv 0 1 0\nf 1\t2 3 ",
+        b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\\\n 3\n",
+        b"# caf\xE9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\ncall x\n",
+        b"f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n",
+        b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n",
+        b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n",
+        b"v 0 0 0 # origin\nv 1 0 0\nv 0 1 0\nf 1 2 3 # the only one\n",
+        b"v 0 0 0 2\nv 2 0 0 2\nv 0 .5e1 0 5.\nf 1 2 3\n",
+        b"v 0 0 0\nv 1 0 0\nv 0 1 0\no first\ng a\ns 1\nf 1 2 3\ng b\n",
+        b"v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 9 9\nf 2 3 4\n",
+        b"# C:\\models\\\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+    ];
+    for text in ways {
+        let loaded = obj(text).unwrap_or_else(|error| panic!("{error}"));
+        let mesh = &loaded.scene.mesh;
+        let corners = [dvec3(0.0, 0.0, 0.0), dvec3(1.0, 0.0, 0.0), dvec3(0.0, 1.0, 0.0)];
+        assert_eq!(mesh.corners(0), corners, "{}", text.escape_ascii());
+        let counts = Counts { vertices: 3, faces: 1, triangles: 1, zero_area: 0, spheres: 0 };
+        assert_eq!(loaded.counts, counts);
+        assert_eq!(warnings(&loaded), [""; 0]);
+        assert!(mesh.normals.is_empty() && mesh.smooth.is_empty());
+    }
+}
+
+#[test]
+fn positions_are_read_as_f64() {
+    let loaded = obj("v 16777217 0.1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("fine");
+    assert_eq!(loaded.scene.mesh.corners(0)[0], dvec3(16_777_217.0, 0.1, 0.0));
+}
+
+#[test]
+fn vertices_that_are_not_numbers_are_refused_with_their_line() {
+    for bad in ["nan", "inf", "-inf", "1e400", "1e51"] {
+        assert_refused(
+            obj(format!("{TRIANGLE}v 0 {bad} 0\nf 1 2 4\n")),
+            "a.obj:5: a coordinate is not finite, or beyond ±1e50; correct the number",
+        );
+    }
+    for bad in ["v 1,5 2 3", "v 1 2", "v", "v a b c", "v 1 2 3 4 5", "v 1 2 3 4 5 6 7", "vn 1 2"] {
+        assert_refused(
+            obj(format!("{TRIANGLE}{bad}\n")),
+            &format!("a.obj:5: `{bad}` cannot be read; write three numbers, with a decimal point"),
+        );
+    }
+    assert_refused(
+        obj(format!("{TRIANGLE}v 1 2 3 0\n")),
+        "a.obj:5: `v 1 2 3 0` has the weight 0; remove the fourth number",
+    );
+}
+
+#[test]
+fn indices_out_of_range_are_refused_with_their_line() {
+    let cure = "count from 1, or back from -1 for the latest";
+    for bad in ["0", "4", "-4", "4294967296", "-9223372036854775808"] {
+        assert_refused(
+            obj(format!("{TRIANGLE}f 1 2 3\nf 1 2 {bad}\nf 1 2 3\n")),
+            &format!("a.obj:6: the face names number {bad} of 3 vertices; {cure}"),
+        );
+    }
+    for bad in ["0", "2", "-2", "6148914691236517206", "-9223372036854775808"] {
+        assert_refused(
+            obj(format!("{TRIANGLE}vn 0 0 1\nf 1//1 2//1 3//{bad}\n")),
+            &format!("a.obj:6: the face names number {bad} of 1 normals; {cure}"),
+        );
+    }
+    let cure =
+        "write vertex, vertex/texture, vertex//normal or vertex/texture/normal, as whole numbers";
+    let thirty = "123456789012345678901234567890";
+    for bad in ["1.0", thirty, "1/2/3/4", "/1", "x", "1/x", "1//x"] {
+        assert_refused(
+            obj(format!("{TRIANGLE}f 1 2 {bad}\n")),
+            &format!("a.obj:5: `{bad}` is not a corner of a face; {cure}"),
+        );
+    }
+}
+
+#[test]
+fn faces_with_too_few_corners_are_left_out() {
+    let loaded = obj(format!("{TRIANGLE}f\nf 1\nf 1 2\nf 1 2 3\nf 3 2")).expect("fine");
+    assert_eq!(loaded.counts.faces, 2);
+    assert_eq!(
+        warnings(&loaded),
+        ["a.obj:5: face with fewer than 3 corners left out (4 times, this is the first)"]
+    );
+}
+
+#[test]
+fn triangles_of_no_area_are_kept_and_counted() {
+    let loaded = obj(format!("{TRIANGLE}v 2 0 0\nf 1 2 2\nf 1 2 4\nf 1 1 1\n")).expect("fine");
+    assert_eq!((loaded.counts.triangles, loaded.counts.zero_area), (4, 3));
+    assert_eq!(
+        warnings(&loaded),
+        ["a.obj:6: triangle of zero area (kept) (3 times, this is the first)"]
+    );
+}
+
+#[test]
+fn polygons_stay_one_face_and_keep_their_area() {
+    for (text, expected) in [
+        ("v 0 0 0\nv 2 1 0\nv 0 2 0\nv 1 1 0\nf 1 2 3 4\n", 1.0),
+        ("v 4 0 0\nv 1 1 0\nv 0 4 0\nv 0 0 0\nf 1 2 3 4\n", 4.0),
+        ("v 0 0 0\nv 0 2 0\nv 0 2 1\nv 0 1 1\nv 0 1 2\nv 0 0 2\nf 1 2 3 4 5 6\n", 3.0),
+    ] {
+        let loaded = obj(text).expect("fine");
+        let mesh = &loaded.scene.mesh;
+        assert!((area(mesh) - expected).abs() < 1e-12);
+        assert_eq!(mesh.faces.len(), 1);
+        assert!(mesh.triangles.iter().all(|t| t.face == FaceId(0)));
+    }
+}
+
+#[test]
+fn odd_polygons_are_reported() {
+    let quad = |z| format!("v 0 0 0\nv 1 0 0\nv 1 1 {z}\nv 0 1 0\n");
+    assert_eq!(
+        warnings(&obj(quad(0) + "f 1 2 3 4\nf 1 3 2 4\n").expect("fine")),
+        ["a.obj:6: polygon crosses itself; split it to get the right area"]
+    );
+    assert_eq!(
+        warnings(&obj(quad(1) + "f 1 2 3\nf 1 2\nf 1 2 3 4\nf 1 2 3 4\n").expect("fine"))[1],
+        "a.obj:7: polygon is not planar; split it into triangles (2 times, this is the first)"
+    );
+}
+
+#[test]
+fn what_is_not_drawn_is_counted() {
+    let text = format!("{TRIANGLE}l 1 2 3\np 1\nV 1 2 3\n\0\nsurf 0 1 0 1 1 2 3\n");
+    assert_eq!(
+        warnings(&obj(text).expect("fine")),
+        [
+            "a.obj:5: lines, points, curves and surfaces ignored: only faces are drawn \
+             (3 times, this is the first)",
+            "a.obj:7: unknown statement ignored (2 times, this is the first)",
+        ]
+    );
+    let colors = "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nf 1 2 3\n";
+    assert_eq!(
+        warnings(&obj(colors).expect("fine")),
+        ["a.obj: vertex colours ignored: colours come from materials"]
+    );
+    assert_refused(
+        obj("v 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+        "a.obj:2: this vertex has no colour and others have one; \
+         give every `v` three numbers, or every `v` six",
+    );
+}
+
+#[test]
+fn nothing_to_draw_is_refused() {
+    let junk = vec![b'x'; 1 << 20];
+    for nothing in [&b""[..], b"\0", b"v 0 0 0\nf 1 1\n", b"# a comment", &junk] {
+        assert_refused(
+            obj(nothing),
+            "a.obj: nothing to draw: no face with 3 corners; \
+             check that this is an OBJ file with `v` and `f` lines",
+        );
+    }
+    assert_refused(
+        obj("v 1 2 3\nf 1 1 1\n"),
+        "a.obj: nothing to draw: all vertices are at one point; check the vertices",
+    );
+    assert_refused(
+        obj(b"\xFF\xFEv\0 \x001\0"),
+        "a.obj:1: the text is UTF-16; save the file as UTF-8",
+    );
+}
+
+#[test]
+fn files_that_cannot_be_read_are_named() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    std::fs::create_dir(folder.path().join("folder.obj")).expect("a folder");
+    for name in ["missing.obj", "missing.toml", "folder.obj"] {
+        let path = folder.path().join(name);
+        let error = load(&path).expect_err("refused");
+        assert!(matches!(error, LoadError::Unreadable { .. }), "{error}");
+        let message = error.to_string();
+        assert!(message.starts_with(&format!("{}: ", path.display())), "{message}");
+        assert!(message.ends_with("; check the path and its permissions"), "{message}");
+    }
+    for name in ["a.stl", "a", ""] {
+        assert_refused(
+            load(Path::new(name)),
+            &format!("{name}: unknown kind of scene; the known ones are .obj and .toml"),
+        );
+    }
+}
+
+#[test]
+fn normals_make_faces_smooth() {
+    let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 2\nvn 3 0 0\nvn 0 1 0\n\
+                f 1 2 3\nf 1/5/1 2/5/2 3/5/1 4/5/-1\nf 1//1 2//2 3\n";
+    let loaded = obj(text).expect("fine");
+    let mesh = &loaded.scene.mesh;
+    let (up, tilted) = (dvec3(0.0, 0.0, 1.0), dvec3(1.0, 0.0, 0.0));
+    assert_eq!(mesh.corner_normals(0), None);
+    assert_eq!(mesh.corner_normals(1), Some([up, tilted, up]));
+    assert_eq!(mesh.corner_normals(2), Some([up, up, dvec3(0.0, 1.0, 0.0)]));
+    assert_eq!(mesh.corner_normals(3), None);
+    assert_eq!(
+        warnings(&loaded),
+        ["a.obj:10: face with normals at some corners only is drawn flat"]
+    );
+    for bad in ["0 0 0", "nan 0 1", "0 inf 1", "0 0 1e400"] {
+        assert_refused(
+            obj(format!("{TRIANGLE}vn 0 0 1\nvn {bad}\nf 1//1 2//2 3//1\n")),
+            "a.obj:6: a normal is zero or not finite; \
+             correct it, or leave the normals out for flat faces",
+        );
+    }
+}
+
+#[test]
+fn groups_and_materials_share_vertices() {
+    let text = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n\
+                g one\nusemtl red\nf 1 2 3\ng two\nusemtl green\nf 2 4 3\nusemtl red\nf 1 2 4\n";
+    let library = b"newmtl green\nKd 0 1 0\nnewmtl red\nKd 1 0 0\n";
+    let loaded =
+        load_from(&[("a.obj", text.as_bytes()), ("a.mtl", library)], "a.obj").expect("fine");
+    let mesh = &loaded.scene.mesh;
+    assert_eq!(mesh.positions.len(), 4);
+    assert_eq!(mesh.faces.iter().map(|f| f.material.0).collect::<Vec<_>>(), [1, 0, 1]);
+    assert_eq!(loaded.scene.materials.len(), 2);
+}
+
+#[test]
+fn large_files_are_read_and_limits_named() {
+    let mut text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n".to_owned() + &"f 1 2 3\n".repeat(200_000);
+    assert_eq!(obj(&text).expect("fine").counts.triangles, 200_000);
+    let polygon = |count: usize| {
+        let mut text = String::new();
+        let mut face = "f".to_owned();
+        for i in 0..count {
+            let angle = std::f64::consts::TAU * i as f64 / count as f64;
+            writeln!(text, "v {} {} 0", angle.cos(), angle.sin()).expect("memory");
+            write!(face, " {}", i + 1).expect("memory");
+        }
+        text + &face
+    };
+    let loaded = obj(polygon(100_000)).expect("fine");
+    assert_eq!((loaded.counts.faces, loaded.counts.triangles), (1, 99_998));
+    text = polygon(100_001);
+    assert_refused(
+        obj(text),
+        "a.obj:100002: 100001 corners in one face, the maximum is 100000; split the face",
+    );
+    let (problem, _) = check::within_limit(MAX_COUNT + 1, "vertices", MAX_COUNT, "").unwrap_err();
+    assert_eq!(problem, "4294967296 vertices, the maximum is 4294967295");
+}
+
+#[test]
+fn a_model_is_framed_and_lit_by_its_size() {
+    for size in [0.15, 1.0, 6.0] {
+        let text = format!("v 0 0 0\nv {size} 0 0\nv 0 {size} 0\nv 0 0 {size}\nf 1 2 3\nf 1 2 4\n");
+        let scene = obj(text).expect("fine").scene;
+        // A cube of this side is centred at half of it, its corners √3/2 sides away.
+        assert!((scene.camera.look_at - 0.5 * size).abs().max_element() < 1e-14);
+        let distance = scene.camera.eye.distance(scene.camera.look_at);
+        let expected = 0.75_f64.sqrt() * size / 20_f64.to_radians().sin();
+        assert!((distance - expected).abs() < 1e-12 * size);
+        let [light] = scene.lights[..] else { panic!("one light") };
+        let reference = 3.0_f64.sqrt() / 2.0 / 20_f64.to_radians().sin();
+        let per_square = light.intensity.x / (size * size) / (reference * reference);
+        // The light is 0.2 camera distances aside of the line of sight.
+        assert!((per_square - 1.04).abs() < 1e-12, "{per_square}");
+        assert!(scene.ambient.x > 0.0);
+    }
+    let text = "mtllib a.mtl\nusemtl lamp\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    let files: [(&str, &[u8]); 2] =
+        [("a.obj", text.as_bytes()), ("a.mtl", b"newmtl lamp\nKe 5 5 5\n")];
+    assert!(load_from(&files, "a.obj").expect("fine").scene.lights.is_empty());
+}

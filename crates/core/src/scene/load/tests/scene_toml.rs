@@ -1,0 +1,266 @@
+use glam::dvec3;
+
+use super::*;
+use crate::geometry::Sphere;
+use crate::scene::{FaceId, Material, MaterialId, Pigment};
+
+/// Every key of the format.
+const EVERYTHING: &str = include_str!("../format.toml");
+
+fn scene(text: impl AsRef<str>) -> Result<Loaded, LoadError> {
+    let a = b"v 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl red\nf 1 2 3\nmtllib a.mtl\n";
+    let files: [(&str, &[u8]); 4] = [
+        ("scenes/s.toml", text.as_ref().as_bytes()),
+        ("scenes/parts/a.obj", a),
+        ("scenes/parts/a.mtl", b"newmtl red\nKd 1 0 0\n"),
+        ("scenes/parts/bad.obj", b"v 0 0 0\nf 1 1 2\n"),
+    ];
+    load_from(&files, "scenes/s.toml")
+}
+
+#[test]
+fn every_key_reaches_the_scene() {
+    let loaded = scene(EVERYTHING).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(warnings(&loaded), [""; 0]);
+    let counts = Counts { vertices: 13, faces: 4, triangles: 5, zero_area: 0, spheres: 1 };
+    assert_eq!(loaded.counts, counts);
+    let scene = loaded.scene;
+    let camera = Camera {
+        eye: dvec3(0.0, 1.0, 5.0),
+        look_at: DVec3::Y,
+        up: dvec3(0.0, 2.0, 0.0),
+        fov: 45.0,
+    };
+    assert_eq!(scene.camera, camera);
+    assert_eq!((scene.ambient, scene.background), (Rgb::splat(0.1), Rgb::new(0.2, 0.3, 0.4)));
+    let lights = [
+        PointLight { position: dvec3(1.0, 4.0, 2.0), intensity: Rgb::new(10.0, 9.0, 8.5) },
+        PointLight { position: dvec3(-1.0, 4.0, 2.0), intensity: Rgb::splat(3.0) },
+    ];
+    assert_eq!(scene.lights, lights);
+
+    let black = Material::matte(Rgb::ZERO);
+    let materials = [
+        Material {
+            rho_d: Pigment::Checker {
+                even: Rgb::splat(0.9),
+                odd: Rgb::new(0.1, 0.2, 0.3),
+                side: 0.5,
+            },
+            ..black
+        },
+        Material {
+            rho_d: Pigment::Solid(Rgb::splat(0.05)),
+            rho_s: Rgb::splat(0.5),
+            shininess: 80.0,
+            k_s: Rgb::splat(0.1),
+            k_t: Rgb::new(0.9, 0.8, 0.7),
+            refractive_index: 1.5,
+            emission: Rgb::ZERO,
+        },
+        Material { emission: Rgb::new(5.0, 5.0, 4.0), ..black },
+        Material::matte(Rgb::new(1.0, 0.0, 0.0)),
+    ];
+    assert_eq!(scene.materials, materials);
+    assert_eq!(scene.mesh.faces.iter().map(|f| f.material.0).collect::<Vec<_>>(), [0, 2, 0, 3]);
+    assert_eq!(scene.spheres[0].shape.center, DVec3::Y);
+    assert_eq!((scene.spheres[0].shape.radius, scene.spheres[0].material), (1.0, MaterialId(1)));
+    assert_eq!(scene.mesh.triangles.iter().filter(|t| t.face == FaceId(0)).count(), 2);
+    assert!((area(&scene.mesh) - (16.0 + 0.5 + 1.5 + 0.75_f64.sqrt())).abs() < 1e-12);
+
+    // x doubled; a quarter turn about x, then one about z; then one up z.
+    let moved = [dvec3(0.0, 2.0, 1.0), dvec3(0.0, 0.0, 2.0), dvec3(1.0, 0.0, 1.0)];
+    for (corner, expected) in scene.mesh.corners(3).into_iter().zip(moved) {
+        assert!((corner - expected).length() < 1e-15, "{corner} for {expected}");
+    }
+    // The point reflection would turn the face inside out; its corners swap.
+    assert_eq!(scene.mesh.corners(4), [-DVec3::X, -DVec3::Z, -DVec3::Y]);
+}
+
+#[test]
+fn embedded_scenes_need_no_file() {
+    let text = "ambient = 1\nmaterial.m.rho_d = 1\n\
+                [[sphere]]\ncenter = [1, 2, 3]\nradius = 2\nmaterial = 'm'\n";
+    let loaded = parse_scene(text, "embedded", Path::new("")).expect("fine");
+    // Without a [camera] the scene is framed.
+    let bounds = Sphere { center: dvec3(1.0, 2.0, 3.0), radius: 2.0 };
+    assert_eq!(loaded.scene.bounding_sphere(), Some(bounds));
+    assert_eq!(loaded.scene.camera, Camera::framing(bounds));
+    assert_eq!(scene("\u{feff}".to_owned() + text).expect("fine").scene, loaded.scene);
+}
+
+/// Replaces one line of the good scene and expects the refusal at that line.
+#[track_caller]
+fn assert_line_refused(good: &str, bad: &str, problem_and_cure: &str) {
+    let line = 1 + EVERYTHING.lines().position(|line| line == good).expect("a line of the scene");
+    let text = EVERYTHING.replacen(&format!("\n{good}\n"), &format!("\n{bad}\n"), 1);
+    assert_refused(scene(text), &format!("scenes/s.toml:{line}: {problem_and_cure}"));
+}
+
+#[test]
+fn bad_values_are_refused_with_their_line() {
+    let share = "it must be between 0 and 1";
+    let finite = "coordinates must be finite and below 1e50";
+    let positive = "it must be finite and positive";
+    let syntax = "correct the value or the syntax";
+    let floor = "vertices = [[-2, 0, -2], [-2, 0, 2], [2, 0, 2], [2, 0, -2]]";
+    for (good, bad, problem, cure) in [
+        ("eye = [0, 1, 5]", "eye = [0, nan, 5]", "eye is [0.0, NaN, 5.0]", finite),
+        (
+            "look_at = [0, 1, 0]",
+            "look_at = [0, 1, 5]",
+            "look_at is the same point as eye",
+            "move one of the two",
+        ),
+        (
+            "up = [0, 2, 0]",
+            "up = [0, 0, 1]",
+            "up is zero or along the line of sight",
+            "choose another `up`",
+        ),
+        (
+            "up = [0, 2, 0]",
+            "up = [0, 0, 0]",
+            "up is zero or along the line of sight",
+            "choose another `up`",
+        ),
+        ("fov = 45", "fov = 180", "fov is out of range", "it must be between 0 and 180 degrees"),
+        ("fov = 45", "fov = 0", "fov is out of range", "it must be between 0 and 180 degrees"),
+        ("fov = 45", "fov = nan", "fov is out of range", "it must be between 0 and 180 degrees"),
+        ("position = [1, 4, 2]", "position = [1, inf, 2]", "position is [1.0, inf, 2.0]", finite),
+        (
+            "intensity = 3",
+            "intensity = -3",
+            "intensity is -3",
+            "it must be finite and not negative",
+        ),
+        ("intensity = 3", "intensity = 'red'", "expected a number or an array of three", syntax),
+        (
+            "intensity = 3",
+            "intensity = ",
+            "string values must be quoted, expected literal string",
+            syntax,
+        ),
+        ("intensity = 3", "position = [1, 2, 3]", "duplicate key", syntax),
+        (
+            "eye = [0, 1, 5]",
+            "eye = [0, 1]",
+            "invalid length 2, expected an array of length 3",
+            syntax,
+        ),
+        (
+            "shininess = 80",
+            "shininess = inf",
+            "shininess is inf",
+            "it must be finite and not negative",
+        ),
+        ("k_s = 0.1", "k_s = 1.1", "k_s is 1.1", share),
+        ("rho_d = 0.05", "rho_d = [0, 0, -1]", "rho_d is -1", share),
+        ("refractive_index = 1.5", "refractive_index = 0", "refractive_index is 0", positive),
+        (
+            "emission = [5, 5, 4]",
+            "emission = [5, 5, inf]",
+            "emission is inf",
+            "it must be finite and not negative",
+        ),
+        ("radius = 1", "radius = 0", "radius is 0", positive),
+        ("radius = 1", "radius = 1e60", "center + radius is [1e60, 1e60, 1e60]", finite),
+        ("scale = -1", "scale = [1, 0, 1]", "scale is [1, 0, 1]", "it must be finite and not zero"),
+        (
+            "translate = [0, 0, 1]",
+            "translate = [nan, 0, 1]",
+            "translate is [NaN, 0.0, 1.0]",
+            finite,
+        ),
+        (
+            floor,
+            "vertices = [[0, 0, 0], [1, 0, 0]]",
+            "a polygon with 2 corners",
+            "give it at least 3",
+        ),
+        (
+            floor,
+            "vertices = [[0, 0, 0], [1, 0, 0], [2, 0, 0]]",
+            "the polygon has no area",
+            "give it 3 corners that are not on one line",
+        ),
+        (
+            floor,
+            "vertices = [[0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]]",
+            "the polygon crosses itself",
+            "order the vertices along its border",
+        ),
+        (
+            floor,
+            "vertices = [[0, 0, 0], [1, 0, 0], [1, 1, 1], [0, 1, 0]]",
+            "the polygon is not planar",
+            "split it into triangles",
+        ),
+        (
+            "material = 'glass'",
+            "material = 'lamp'",
+            "a sphere cannot emit: area lights are faces",
+            "use a [[polygon]] for the light, or a material without emission",
+        ),
+        (
+            "material = 'glass'",
+            "material = 'glas'",
+            "unknown material `glas`",
+            "the known ones are glass, lamp, floor",
+        ),
+        (
+            "scale = -1",
+            "scales = -1",
+            "unknown field `scales`",
+            "the known ones are scale, rotate, obj, material, translate",
+        ),
+        (
+            "[material.lamp]",
+            "[materials.lamp]",
+            "unknown field `materials`",
+            "the known ones are material, camera, ambient, sphere, mesh, background, light, polygon",
+        ),
+    ] {
+        assert_line_refused(good, bad, &format!("{problem}; {cure}"));
+    }
+}
+
+#[test]
+fn missing_keys_are_named() {
+    let text = "[camera]\neye = [0, 0, 1]\n[[sphere]]\ncenter = [0, 0, 0]\n";
+    assert_refused(scene(text), "scenes/s.toml:1: missing field `look_at`; add it");
+}
+
+#[test]
+fn meshes_are_refused_where_they_are_named() {
+    let good = "obj = 'parts/a.obj'";
+    let cure = "mesh files are looked for from the scene's folder";
+    let missing = "scenes/parts/b.obj: entity not found";
+    assert_line_refused(good, "obj = 'parts/b.obj'", &format!("{missing}; {cure}"));
+    assert_refused(
+        scene(EVERYTHING.replace("parts/a.obj", "parts/bad.obj")),
+        "scenes/parts/bad.obj:2: the face names number 2 of 1 vertices; \
+         count from 1, or back from -1 for the latest",
+    );
+}
+
+#[test]
+fn empty_and_dark_scenes() {
+    assert_refused(
+        scene("ambient = 1"),
+        "scenes/s.toml: nothing to draw; add a [[sphere]], [[mesh]] or [[polygon]]",
+    );
+    let dark = "[[polygon]]\nmaterial = 'm'\nvertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\n\
+                [material.m]\nrho_d = 0.5\n";
+    let no_light = "scenes/s.toml: no light: the picture will be black; \
+                    add a [[light]], a material with emission or an ambient";
+    assert_eq!(warnings(&scene(dark).expect("fine")), [no_light]);
+    for light in ["emission = 1", "[[light]]\nposition = [0, 0, 1]\nintensity = 1"] {
+        assert_eq!(warnings(&scene(format!("{dark}{light}")).expect("fine")), [""; 0]);
+    }
+    let nameless = dark.replace("[material.m]\nrho_d = 0.5\n", "");
+    assert_refused(
+        scene(nameless),
+        "scenes/s.toml:2: unknown material `m`; no such name is defined",
+    );
+}
