@@ -109,7 +109,7 @@ pub fn run(args: &Args) -> Result<()> {
     }
     let mut scene = loaded.scene;
     place(&mut scene, args)?;
-    let counts = loaded.counts;
+    let counts = scene.counts();
     println!(
         "scene   {:7.3} s   {} triangles in {} faces, {} spheres, {} lights",
         start.elapsed().as_secs_f64(),

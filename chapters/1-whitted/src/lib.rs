@@ -1,1 +1,4 @@
-//! chapter-1
+//! Chapter 1, « Introduction au lancer de rayons »: its scenes and its figures. The lesson is
+//! `README.md` beside this package's manifest.
+
+pub mod scenes;

@@ -15,7 +15,7 @@ fn main() -> ExitCode {
     let start = Instant::now();
     match load(Path::new(&path)) {
         Ok(loaded) => {
-            println!("{:.3} s, {:?}", start.elapsed().as_secs_f64(), loaded.counts);
+            println!("{:.3} s, {:?}", start.elapsed().as_secs_f64(), loaded.scene.counts());
             println!("{:?}", loaded.scene.camera);
             for warning in &loaded.warnings {
                 println!("warning: {warning}");

@@ -5,11 +5,11 @@
 //! Graphics Environments*, IEEE CG&A 7(11), 1987, in arrangements of our own.
 
 use std::collections::HashMap;
-use std::f64::consts::{FRAC_PI_3, FRAC_PI_4};
+use std::f64::consts::{FRAC_PI_3, FRAC_PI_4, TAU};
 
-use glam::{DMat3, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 
-use crate::geometry::Sphere;
+use crate::geometry::{Sphere, triangulate};
 use crate::scene::{MaterialId, Mesh, SphereObject};
 
 /// A closed sphere of radius 1 around the origin: an icosahedron whose faces are split in four `level`
@@ -123,6 +123,48 @@ pub fn tetrahedra(level: u32, material: MaterialId) -> Mesh {
     mesh
 }
 
+/// `level`³ gears of radius 1 in layers, each meshing with its neighbours: per gear two concave faces of
+/// 96 corners and 96 flat sides, 380 triangles.
+pub fn gears(level: u32, material: MaterialId) -> Mesh {
+    const TEETH: u32 = 24;
+    const THICKNESS: f64 = 0.25;
+    let outline: Vec<DVec3> = (0..TEETH)
+        .flat_map(|tooth| {
+            // Root, flank up, tip, flank down; tips are narrower than gaps, so that gears can turn.
+            [(0.00, 0.88), (0.30, 0.88), (0.40, 1.0), (0.85, 1.0)].map(|(part, radius)| {
+                let angle = (f64::from(tooth) + part) / f64::from(TEETH) * TAU;
+                DVec3::new(angle.cos() * radius, 0.0, angle.sin() * radius)
+            })
+        })
+        .collect();
+    let corners = outline.len() as u32;
+    let mut cap = Vec::new();
+    triangulate(&outline, &mut cap);
+
+    let mut gear = Mesh::default();
+    gear.positions.extend(outline.iter().map(|&p| p - DVec3::Y * (0.5 * THICKNESS)));
+    gear.positions.extend(outline.iter().map(|&p| p + DVec3::Y * (0.5 * THICKNESS)));
+    let turned = cap.iter().map(|&[a, b, c]| [a + corners, c + corners, b + corners]);
+    gear.push_face(material, &turned.collect::<Vec<_>>());
+    gear.push_face(material, &cap);
+    for a in 0..corners {
+        let b = (a + 1) % corners;
+        gear.push_face(material, &[[a, a + corners, b + corners], [a, b + corners, b]]);
+    }
+
+    let mut mesh = Mesh::default();
+    let middle = 0.5 * f64::from(level.saturating_sub(1));
+    for k in 0..level.pow(3) {
+        let cell = [k % level, k / level % level, k / level.pow(2)].map(f64::from);
+        let center = (DVec3::from(cell) - middle) * DVec3::new(1.9, 0.6, 1.9);
+        // Every second gear is turned by half a tooth, so that teeth meet gaps.
+        let odd = (cell[0] + cell[2]) % 2.0;
+        let turn = DQuat::from_rotation_y(odd * TAU / f64::from(2 * TEETH));
+        mesh.append(&gear, DAffine3::from_rotation_translation(turn, center), 0);
+    }
+    mesh
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -182,5 +224,21 @@ mod tests {
             let volume = six_volumes(&mesh) / 6.0;
             assert!((volume - 8.0 / 3.0 * 0.5_f64.powi(level as i32)).abs() < 1e-12);
         }
+    }
+
+    #[test]
+    fn gears_are_closed_and_keep_their_faces() {
+        for level in 1..4 {
+            let mesh = gears(level, MaterialId(0));
+            let count = level.pow(3) as usize;
+            assert_eq!((mesh.faces.len(), mesh.triangles.len()), (98 * count, 380 * count));
+            assert!(is_closed(&mesh));
+            assert!(six_volumes(&mesh) > 0.0);
+        }
+        // A tooth spans 15 degrees: four triangles from the axis, of radii (.88, .88), (.88, 1), (1, 1), (1, .88).
+        let sine = |part: f64| (part / 24.0 * TAU).sin();
+        let area =
+            12.0 * (0.88 * 0.88 * sine(0.30) + 0.88 * sine(0.10) + sine(0.45) + 0.88 * sine(0.15));
+        assert!((six_volumes(&gears(1, MaterialId(0))) / 6.0 - 0.25 * area).abs() < 1e-12);
     }
 }

@@ -9,12 +9,16 @@ mod leave;
 mod ray;
 mod sphere;
 mod triangle;
+mod triangulate;
 
 pub use bounds::{Bounds3, Slabs};
 pub use leave::leave_surface;
 pub use ray::{Interval, Ray};
 pub use sphere::Sphere;
 pub use triangle::{Shear, TriangleHit, intersect_triangle};
+#[cfg(test)]
+pub(crate) use triangulate::newell_normal;
+pub(crate) use triangulate::triangulate;
 
 /// γ(n): bounds the relative error of n rounded `f64` operations.
 pub(crate) const fn gamma(n: u32) -> f64 {

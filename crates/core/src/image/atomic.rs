@@ -2,6 +2,7 @@ use std::fs;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+use tempfile::NamedTempFile;
 use thiserror::Error;
 
 /// Why a file was not written. Whatever stood under its name before is untouched.
@@ -68,7 +69,35 @@ fn cure(error: &io::Error) -> &'static str {
 pub fn write_atomically(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), WriteError> {
     let path = path.as_ref();
     let io_error = |source| WriteError::Io { path: path.to_owned(), source };
+    let Prepared { mut temporary, target, old } = prepare(path)?;
+    temporary.write_all(bytes).map_err(io_error)?;
+    temporary.flush().map_err(io_error)?;
+    if let Some(old) = old {
+        temporary.as_file().set_permissions(old.permissions()).map_err(io_error)?;
+    }
+    temporary.as_file().sync_all().map_err(io_error)?;
+    temporary.persist(&target).map_err(|error| io_error(error.error))?;
+    Ok(())
+}
 
+/// Refuses what [`write_atomically`] would refuse, before the work of making the bytes; only a disk
+/// that fills up in the meantime goes unnoticed.
+///
+/// # Errors
+/// See [`WriteError`].
+pub fn check_writable(path: impl AsRef<Path>) -> Result<(), WriteError> {
+    prepare(path.as_ref()).map(drop)
+}
+
+/// A temporary file that is about to take the place of another one.
+struct Prepared {
+    temporary: NamedTempFile,
+    target: PathBuf,
+    old: Option<fs::Metadata>,
+}
+
+fn prepare(path: &Path) -> Result<Prepared, WriteError> {
+    let io_error = |source| WriteError::Io { path: path.to_owned(), source };
     let old = fs::metadata(path).ok();
     if let Some(old) = &old {
         let path = path.to_owned();
@@ -97,15 +126,8 @@ pub fn write_atomically(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), Writ
     builder.prefix(".lancer-").suffix(".tmp");
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut temporary = builder.tempfile_in(folder).map_err(io_error)?;
-    temporary.write_all(bytes).map_err(io_error)?;
-    temporary.flush().map_err(io_error)?;
-    if let Some(old) = old {
-        temporary.as_file().set_permissions(old.permissions()).map_err(io_error)?;
-    }
-    temporary.as_file().sync_all().map_err(io_error)?;
-    temporary.persist(&target).map_err(|error| io_error(error.error))?;
-    Ok(())
+    let temporary = builder.tempfile_in(folder).map_err(io_error)?;
+    Ok(Prepared { temporary, target, old })
 }
 
 fn is_folder(path: &Path) -> io::Result<bool> {

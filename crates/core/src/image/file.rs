@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use ::image::{DynamicImage, ImageFormat, ImageReader, Rgb32FImage, RgbImage};
 use thiserror::Error;
 
-use super::{Image, ImageSize, SizeError, WriteError, srgb, write_atomically};
+use super::{Image, ImageSize, SizeError, WriteError, check_writable, srgb, write_atomically};
 
 /// Why a picture was not saved or loaded.
 #[derive(Debug, Error)]
@@ -94,6 +94,15 @@ pub fn save(path: impl AsRef<Path>, image: &Image, exposure_ev: f64) -> Result<(
     let bytes = encode(image, format, exposure_ev)
         .map_err(|source| ImageError::Encode { path: path.into(), source })?;
     Ok(write_atomically(path, &bytes)?)
+}
+
+/// Refuses a name under which [`save`] could not write, before the picture is computed.
+///
+/// # Errors
+/// As [`save`], but for a disk that fills up in the meantime.
+pub fn check_target(path: impl AsRef<Path>) -> Result<(), ImageError> {
+    format_of(path.as_ref())?;
+    Ok(check_writable(path)?)
 }
 
 /// Loads a picture in the format that the file's name tells, in either case: `.png`, of 8 or 16

@@ -5,8 +5,8 @@ mod file;
 mod size;
 mod srgb;
 
-pub use atomic::{WriteError, write_atomically};
-pub use file::{ImageError, load, save};
+pub use atomic::{WriteError, check_writable, write_atomically};
+pub use file::{ImageError, check_target, load, save};
 pub use size::{ImageSize, SizeError};
 
 use crate::Rgb;

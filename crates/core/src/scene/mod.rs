@@ -3,6 +3,7 @@
 //! A [`Scene`] holds no resolution, sample count or file name; those are settings of a method.
 
 mod camera;
+mod counts;
 mod framing;
 mod light;
 pub mod load;
@@ -10,6 +11,7 @@ mod material;
 mod mesh;
 
 pub use camera::{Camera, PrimaryRays};
+pub use counts::Counts;
 pub use framing::CameraError;
 pub use light::PointLight;
 pub use material::{Material, MaterialId, Pigment};

@@ -16,7 +16,6 @@ mod statements;
 mod tables;
 #[cfg(test)]
 mod tests;
-mod triangulate;
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -46,23 +45,6 @@ pub struct Loaded {
     pub scene: Scene,
     /// What was ignored, replaced or looks wrong, one entry per file and kind.
     pub warnings: Vec<Warning>,
-    /// The size of the scene.
-    pub counts: Counts,
-}
-
-/// The size of a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Counts {
-    /// Vertices of the mesh that a face uses.
-    pub vertices: usize,
-    /// Polygons.
-    pub faces: usize,
-    /// Triangles the polygons were cut into.
-    pub triangles: usize,
-    /// Triangles of no area among them.
-    pub zero_area: usize,
-    /// Spheres.
-    pub spheres: usize,
 }
 
 /// Reads a scene; the extension decides how.
@@ -166,21 +148,7 @@ fn frame(scene: &mut Scene, file: &str) -> Result<(), LoadError> {
 }
 
 fn finish(scene: Scene, warnings: Warnings) -> Loaded {
-    let mesh = &scene.mesh;
-    let counts = Counts {
-        vertices: mesh.positions.len(),
-        faces: mesh.faces.len(),
-        triangles: mesh.triangles.len(),
-        zero_area: (0..mesh.triangles.len()).filter(|&i| is_zero_area(mesh.corners(i))).count(),
-        spheres: scene.spheres.len(),
-    };
-    Loaded { scene, warnings: warnings.into_vec(), counts }
+    Loaded { scene, warnings: warnings.into_vec() }
 }
 
 const DEFAULT_GREY: Rgb = Rgb::splat(0.75);
-
-/// Whether a triangle's corners are on one line, up to the rounding of their coordinates.
-fn is_zero_area([a, b, c]: [DVec3; 3]) -> bool {
-    let (u, v) = (b - a, c - a);
-    u.cross(v).length() <= 4.0 * f64::EPSILON * u.length() * v.length()
-}

@@ -8,8 +8,9 @@ use super::clean::Lines;
 use super::mtl::Library;
 use super::report::{LoadError, WarningKind, Warnings};
 use super::statements::{Record, Run, Statements};
-use super::triangulate::triangulate;
-use super::{DEFAULT_GREY, MAX_COORDINATE, MAX_COUNT, Open, is_zero_area};
+use super::{DEFAULT_GREY, MAX_COORDINATE, MAX_COUNT, Open};
+use crate::geometry::triangulate;
+use crate::scene::counts::is_zero_area;
 use crate::scene::{Face, FaceId, Material, MaterialId, Mesh, Triangle};
 
 /// Reads an OBJ file and its material libraries.

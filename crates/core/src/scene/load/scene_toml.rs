@@ -9,13 +9,13 @@ use super::report::{LoadError, WarningKind, Warnings};
 use super::tables::{
     CameraTable, MaterialTable, MeshTable, PigmentValue, SceneFile, SphereTable, Triple,
 };
-use super::triangulate::triangulate;
 use super::{
-    Loaded, MAX_COORDINATE, MAX_CORNERS, MAX_COUNT, Open, empty_scene, finish, frame, is_zero_area,
-    obj,
+    Loaded, MAX_COORDINATE, MAX_CORNERS, MAX_COUNT, Open, empty_scene, finish, frame, obj,
 };
 use crate::Rgb;
 use crate::geometry::Sphere;
+use crate::geometry::triangulate;
+use crate::scene::counts::is_zero_area;
 use crate::scene::{
     Camera, CameraError, Material, MaterialId, Mesh, Pigment, PointLight, Scene, SphereObject,
 };

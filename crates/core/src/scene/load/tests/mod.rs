@@ -35,5 +35,5 @@ fn assert_refused(result: Result<Loaded, LoadError>, message: &str) {
 
 fn area(mesh: &Mesh) -> f64 {
     let corners = (0..mesh.triangles.len()).map(|i| mesh.corners(i));
-    corners.map(|c| 0.5 * triangulate::newell_normal(&c).length()).sum()
+    corners.map(|c| 0.5 * crate::geometry::newell_normal(&c).length()).sum()
 }

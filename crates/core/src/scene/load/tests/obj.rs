@@ -32,8 +32,9 @@ fn every_way_to_write_a_triangle() {
         let mesh = &loaded.scene.mesh;
         let corners = [dvec3(0.0, 0.0, 0.0), dvec3(1.0, 0.0, 0.0), dvec3(0.0, 1.0, 0.0)];
         assert_eq!(mesh.corners(0), corners, "{}", text.escape_ascii());
-        let counts = Counts { vertices: 3, faces: 1, triangles: 1, zero_area: 0, spheres: 0 };
-        assert_eq!(loaded.counts, counts);
+        let counts =
+            crate::scene::Counts { vertices: 3, faces: 1, triangles: 1, zero_area: 0, spheres: 0 };
+        assert_eq!(loaded.scene.counts(), counts);
         assert_eq!(warnings(&loaded), [""; 0]);
         assert!(mesh.normals.is_empty() && mesh.smooth.is_empty());
     }
@@ -94,7 +95,7 @@ fn indices_out_of_range_are_refused_with_their_line() {
 #[test]
 fn faces_with_too_few_corners_are_left_out() {
     let loaded = obj(format!("{TRIANGLE}f\nf 1\nf 1 2\nf 1 2 3\nf 3 2")).expect("fine");
-    assert_eq!(loaded.counts.faces, 2);
+    assert_eq!(loaded.scene.counts().faces, 2);
     assert_eq!(
         warnings(&loaded),
         ["a.obj:5: face with fewer than 3 corners left out (4 times, this is the first)"]
@@ -104,7 +105,7 @@ fn faces_with_too_few_corners_are_left_out() {
 #[test]
 fn triangles_of_no_area_are_kept_and_counted() {
     let loaded = obj(format!("{TRIANGLE}v 2 0 0\nf 1 2 2\nf 1 2 4\nf 1 1 1\n")).expect("fine");
-    assert_eq!((loaded.counts.triangles, loaded.counts.zero_area), (4, 3));
+    assert_eq!((loaded.scene.counts().triangles, loaded.scene.counts().zero_area), (4, 3));
     assert_eq!(
         warnings(&loaded),
         ["a.obj:6: triangle of zero area (kept) (3 times, this is the first)"]
@@ -242,7 +243,7 @@ fn groups_and_materials_share_vertices() {
 #[test]
 fn large_files_are_read_and_limits_named() {
     let mut text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n".to_owned() + &"f 1 2 3\n".repeat(200_000);
-    assert_eq!(obj(&text).expect("fine").counts.triangles, 200_000);
+    assert_eq!(obj(&text).expect("fine").scene.counts().triangles, 200_000);
     let polygon = |count: usize| {
         let mut text = String::new();
         let mut face = "f".to_owned();
@@ -254,7 +255,7 @@ fn large_files_are_read_and_limits_named() {
         text + &face
     };
     let loaded = obj(polygon(100_000)).expect("fine");
-    assert_eq!((loaded.counts.faces, loaded.counts.triangles), (1, 99_998));
+    assert_eq!((loaded.scene.counts().faces, loaded.scene.counts().triangles), (1, 99_998));
     text = polygon(100_001);
     assert_refused(
         obj(text),

@@ -22,8 +22,9 @@ fn scene(text: impl AsRef<str>) -> Result<Loaded, LoadError> {
 fn every_key_reaches_the_scene() {
     let loaded = scene(EVERYTHING).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(warnings(&loaded), [""; 0]);
-    let counts = Counts { vertices: 13, faces: 4, triangles: 5, zero_area: 0, spheres: 1 };
-    assert_eq!(loaded.counts, counts);
+    let counts =
+        crate::scene::Counts { vertices: 13, faces: 4, triangles: 5, zero_area: 0, spheres: 1 };
+    assert_eq!(loaded.scene.counts(), counts);
     let scene = loaded.scene;
     let camera = Camera {
         eye: dvec3(0.0, 1.0, 5.0),

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 /// What a polygon was found to be while it was cut.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Defects {
+pub(crate) struct Defects {
     /// It crosses itself, so that its triangles' areas do not add up to its own.
     pub self_intersecting: bool,
     /// A corner is further from the mean plane than a thousandth of the polygon's size.
@@ -19,7 +19,7 @@ pub(super) struct Defects {
 /// A fan of one corner serves where it covers the polygon, as in every convex one; otherwise ears
 /// are clipped. Both look at the polygon along the axis its normal is closest to, which keeps the
 /// coordinates as they were written.
-pub(super) fn triangulate(corners: &[DVec3], triangles: &mut Vec<[u32; 3]>) -> Defects {
+pub(crate) fn triangulate(corners: &[DVec3], triangles: &mut Vec<[u32; 3]>) -> Defects {
     let count = corners.len() as u32;
     if count == 3 {
         triangles.push([0, 1, 2]);
@@ -56,7 +56,7 @@ pub(super) fn triangulate(corners: &[DVec3], triangles: &mut Vec<[u32; 3]>) -> D
 /// The area vector of a polygon: perpendicular to its mean plane, as long as twice its area.
 ///
 /// Newell's method: a straight or repeated corner does not disturb it.
-pub(super) fn newell_normal(corners: &[DVec3]) -> DVec3 {
+pub(crate) fn newell_normal(corners: &[DVec3]) -> DVec3 {
     let origin = corners[0];
     corners.windows(2).map(|pair| (pair[0] - origin).cross(pair[1] - origin)).sum()
 }
