@@ -1,1 +1,58 @@
-//! lancer-figure
+//! Plates: the pictures, charts and diagrams the course shows, as PNG and as SVG.
+//!
+//! Everything is drawn as a list of primitives on a [`Canvas`]; the PNG and the SVG come from that one
+//! list, so they show the same geometry. Text is drawn from one committed font: no system font is read,
+//! and the bytes are the same on every run.
+//!
+//! A figure stacks [`Panel`]s (a [`Montage`], a [`Chart`], a [`SpeedError`], a [`Tree`], a [`Drawing`],
+//! a [`Row`] of them) in a [`Plate`], which adds the title, the claim with its verdict, and the caption.
+//! This crate knows no renderer: pictures come in as 8-bit RGB, measurements as `f64`.
+
+mod axis;
+mod bars;
+mod canvas;
+mod chart;
+mod chart_layout;
+mod data;
+mod diagram;
+mod font;
+mod geometry;
+mod heat;
+mod index;
+mod labels;
+mod montage;
+mod number;
+mod palette;
+mod picture;
+mod plate;
+mod raster;
+mod shape;
+mod speed_error;
+mod style;
+mod svg;
+mod tree;
+mod wrap;
+
+pub use axis::Axis;
+pub use bars::BarChart;
+pub use canvas::{Canvas, Fault};
+pub use chart::{Chart, Datum, Series, Spread};
+pub use data::{Table, Value};
+pub use diagram::{Drawing, Pen};
+pub use font::{Weight, missing_glyphs, text_width};
+pub use geometry::{Point, Rect};
+pub use heat::{HeatScale, heat_color};
+pub use index::{Entry, index_html};
+pub use montage::{Inset, Montage, Tile};
+pub use number::{decimals, number, power_of_ten, superscript};
+pub use palette::{METHODS, category_color, method_color};
+pub use picture::Picture;
+pub use plate::{Panel, Plate, Row, Verdict};
+pub use shape::{Anchor, Color, Stroke, Style, Text};
+pub use speed_error::{CurvePoint, MethodCurve, SpeedError};
+pub use tree::Tree;
+pub use wrap::wrap;
+
+pub use style::{
+    ACCENT, CAPTION, CLAIM, FAINT, HEADING, INK, LABEL, MUTED, SMALLEST, TICK, TITLE, WIDTH,
+};

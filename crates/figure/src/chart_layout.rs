@@ -1,0 +1,344 @@
+//! Where everything in a chart goes: the frame, the axes, and each label.
+
+use crate::axis::{Scale, Tick};
+use crate::chart::{Chart, Datum, MARK, Series, Spread};
+use crate::geometry::{Point, Rect, along};
+use crate::labels::{Room, beside, spread};
+use crate::shape::{Color, Text};
+use crate::style::{ASCENT, CAP_HEIGHT, DESCENT, HEADING, INK, LABEL, MUTED, SMALLEST, TICK};
+
+/// A chart's geometry in one rectangle.
+pub(crate) struct Layout {
+    pub(crate) frame: Rect,
+    pub(crate) x: Scale,
+    pub(crate) y: Scale,
+    pub(crate) x_ticks: Vec<Tick>,
+    pub(crate) y_ticks: Vec<Tick>,
+    /// Labels with their halo, at the positions of their baselines.
+    pub(crate) labels: Vec<(Point, Text)>,
+    pub(crate) guides: Vec<(Point, Point)>,
+    pub(crate) markers: Vec<(Point, Point)>,
+    /// Thin lines to the labels right of the frame.
+    pub(crate) leaders: Vec<(Point, Point, Color)>,
+    pub(crate) better: Option<(Point, Point)>,
+}
+
+/// A label that found no room inside the frame, and the point it names.
+struct Homeless {
+    text: Text,
+    target: Option<Point>,
+}
+
+const LEADER: f64 = 22.0;
+
+impl Layout {
+    /// Lays the chart out in `rect`.
+    pub(crate) fn of(chart: &Chart, rect: Rect) -> Self {
+        let (layout, homeless) = Self::with_gutter(chart, rect, 0.0);
+        if homeless.is_empty() {
+            return layout;
+        }
+        // A narrower frame may make others homeless, so the gutter takes the longest of all.
+        let widest = all_labels(chart).map(|text| text.width()).fold(0.0, f64::max);
+        let (mut layout, homeless) = Self::with_gutter(chart, rect, widest + LEADER);
+        layout.fill_gutter(homeless);
+        layout
+    }
+
+    fn with_gutter(chart: &Chart, rect: Rect, gutter: f64) -> (Self, Vec<Homeless>) {
+        let mut layout = Self::framed(chart, rect, gutter);
+        let homeless = layout.place_labels(chart);
+        (layout, homeless)
+    }
+
+    fn framed(chart: &Chart, rect: Rect, gutter: f64) -> Self {
+        let top = if chart.title.is_empty() { 0.6 * TICK } else { 1.7 * HEADING };
+        let bottom = 9.0 + CAP_HEIGHT * TICK + 12.0 + LABEL + DESCENT * LABEL;
+        let (y_top, y_bottom) = (rect.y + top, rect.bottom() - bottom);
+        let values = |upright: bool, of: fn(&Datum) -> Spread| {
+            let markers =
+                chart.markers.iter().filter(move |m| m.upright == upright).map(|m| m.value);
+            let data = chart.series.iter().flat_map(Series::shown);
+            data.flat_map(move |datum| [of(datum).low, of(datum).mid, of(datum).high])
+                .chain(markers)
+        };
+        let y = chart.y.scale(values(false, |datum| datum.y), y_bottom, y_top);
+        let y_ticks = y.ticks(2.6 * TICK);
+        let widest =
+            y_ticks.iter().map(|tick| Text::new(&tick.label, TICK).width()).fold(0.0, f64::max);
+        let title = if chart.y.title.is_empty() { 0.0 } else { 1.6 * LABEL };
+        let left = rect.x + title + widest + 9.0;
+        let right = rect.right() - gutter.max(1.6 * TICK);
+        let x = chart.x.scale(values(true, |datum| datum.x), left, right);
+        let x_ticks = x.ticks(4.2 * TICK);
+        Self {
+            frame: Rect::new(left, y_top, right - left, y_bottom - y_top),
+            x,
+            y,
+            x_ticks,
+            y_ticks,
+            labels: Vec::new(),
+            guides: Vec::new(),
+            markers: Vec::new(),
+            leaders: Vec::new(),
+            better: None,
+        }
+    }
+
+    /// Where a point lies.
+    pub(crate) fn place(&self, datum: &Datum) -> Point {
+        [self.x.at(datum.x.mid), self.y.at(datum.y.mid)]
+    }
+
+    /// Where the upright grid lines are: the minor or the labelled ones.
+    pub(crate) fn grid_x(&self, minor: bool) -> Vec<f64> {
+        grid(&self.x, &self.x_ticks, minor)
+    }
+
+    /// Where the level grid lines are.
+    pub(crate) fn grid_y(&self, minor: bool) -> Vec<f64> {
+        grid(&self.y, &self.y_ticks, minor)
+    }
+
+    /// Places all labels, the important ones first, and returns those that must go elsewhere.
+    fn place_labels(&mut self, chart: &Chart) -> Vec<Homeless> {
+        let mut room = self.room(chart);
+        let mut homeless = Vec::new();
+        for series in &chart.series {
+            self.name_series(series, &mut room, &mut homeless);
+        }
+        self.name_markers(chart, &mut room, &mut homeless);
+        if chart.better {
+            self.place_better(&mut room, &mut homeless);
+        }
+        for (slope, label) in &chart.guides {
+            self.place_guide(chart, *slope, label, &mut room, &mut homeless);
+        }
+        for series in &chart.series {
+            for datum in series.shown().filter(|datum| !datum.note.is_empty()) {
+                let text = note_text(series, datum);
+                if let Some(rect) = room.place(beside(self.place(datum), size(&text), MARK + 4.0)) {
+                    self.write(text, rect);
+                }
+            }
+        }
+        homeless
+    }
+
+    /// The frame, with everything taken that is drawn from data.
+    fn room(&mut self, chart: &Chart) -> Room {
+        let frame = self.frame;
+        let mut room = Room::new(frame.grown(-3.0));
+        for series in &chart.series {
+            let places: Vec<Point> = series.shown().map(|datum| self.place(datum)).collect();
+            if series.line.is_some() {
+                places.windows(2).for_each(|pair| room.cross(pair[0], pair[1]));
+            }
+            for (place, datum) in places.iter().zip(series.shown()) {
+                if series.marks {
+                    room.take(Rect::around(*place, 2.4 * MARK, 2.4 * MARK));
+                }
+                room.cross([self.x.at(datum.x.low), place[1]], [self.x.at(datum.x.high), place[1]]);
+                room.cross([place[0], self.y.at(datum.y.low)], [place[0], self.y.at(datum.y.high)]);
+            }
+        }
+        for marker in &chart.markers {
+            let ends = if marker.upright {
+                let x = self.x.at(marker.value);
+                ([x, frame.bottom()], [x, frame.y])
+            } else {
+                let y = self.y.at(marker.value);
+                ([frame.x, y], [frame.right(), y])
+            };
+            room.cross(ends.0, ends.1);
+            self.markers.push(ends);
+        }
+        room
+    }
+
+    /// A series is named beside its right end, else its left end, else any of its points.
+    fn name_series(&mut self, series: &Series, room: &mut Room, homeless: &mut Vec<Homeless>) {
+        let mut places: Vec<Point> = series.shown().map(|datum| self.place(datum)).collect();
+        if places.is_empty() || series.label.is_empty() {
+            return;
+        }
+        places.sort_by(|a, b| b[0].total_cmp(&a[0]));
+        let end = places[0];
+        let last = places.len() - 1;
+        places[1..].rotate_right(usize::from(last > 0));
+        let text = series_text(series);
+        let candidates = places.iter().flat_map(|&place| {
+            beside(place, size(&text), MARK + 5.0).into_iter().chain(beside(
+                place,
+                size(&text),
+                2.0 * MARK + 5.0,
+            ))
+        });
+        match room.place(candidates) {
+            Some(rect) => self.write(text, rect),
+            None => homeless.push(Homeless { text, target: Some(end) }),
+        }
+    }
+
+    /// A marker is named along its line, the far end first.
+    fn name_markers(&mut self, chart: &Chart, room: &mut Room, homeless: &mut Vec<Homeless>) {
+        const GAP: f64 = 4.0;
+        for (marker, (from, to)) in chart.markers.iter().zip(self.markers.clone()) {
+            let text = marker_text(&marker.label);
+            let [width, height] = size(&text);
+            let candidates = (0..=20).flat_map(|step| {
+                let inside = if marker.upright { height } else { width } / 2.0 + GAP;
+                let length = (to[0] - from[0]).abs() + (to[1] - from[1]).abs();
+                let part =
+                    1.0 - inside / length - f64::from(step) / 20.0 * (1.0 - 2.0 * inside / length);
+                let at = along(from, to, part);
+                [1.0, -1.0].map(|side| {
+                    let offset = if marker.upright {
+                        [side * (width / 2.0 + GAP), 0.0]
+                    } else {
+                        [0.0, -side * (height / 2.0 + GAP)]
+                    };
+                    Rect::around([at[0] + offset[0], at[1] + offset[1]], width, height)
+                })
+            });
+            match room.place(candidates) {
+                Some(rect) => self.write(text, rect),
+                None => homeless.push(Homeless { text, target: Some(to) }),
+            }
+        }
+    }
+
+    /// The arrow to where charts are best, as near to that corner as there is room.
+    fn place_better(&mut self, room: &mut Room, homeless: &mut Vec<Homeless>) {
+        const ARROW: f64 = 46.0;
+        let text = better_text();
+        let (width, height) = (ARROW + 6.0 + text.width(), ARROW);
+        let corner = [self.frame.x, self.frame.bottom()];
+        let spots =
+            room.spots(corner).into_iter().map(|spot| Rect::around(spot, width, height).grown(6.0));
+        let Some(rect) = room.place(spots) else {
+            homeless
+                .push(Homeless {
+                    text: Text { content: "↙ better".into(), ..text }, target: None
+                });
+            return;
+        };
+        let rect = rect.grown(-6.0);
+        self.better = Some(([rect.x + ARROW, rect.y], [rect.x, rect.bottom()]));
+        self.labels.push(([rect.x + ARROW + 6.0, rect.y + CAP_HEIGHT * LABEL], text));
+    }
+
+    /// A short line of the given slope near the data, with its label beside its middle.
+    fn place_guide(
+        &mut self,
+        chart: &Chart,
+        slope: f64,
+        label: &str,
+        room: &mut Room,
+        homeless: &mut Vec<Homeless>,
+    ) {
+        let rise_per_run = slope * self.y.per_unit() / self.x.per_unit();
+        let run =
+            (0.22 * self.frame.width).min(0.3 * self.frame.height / rise_per_run.abs().max(1e-9));
+        let half = [run / 2.0, rise_per_run * run / 2.0];
+        let text = marker_text(label);
+        let [width, height] = size(&text);
+        let data = chart.series.iter().flat_map(Series::shown).map(|datum| self.place(datum));
+        let (count, sum) =
+            data.fold((0, [0.0; 2]), |(n, sum), p| (n + 1, [sum[0] + p[0], sum[1] + p[1]]));
+        let aim = if count == 0 { self.frame.center() } else { sum.map(|s| s / f64::from(count)) };
+        for spot in room.spots(aim) {
+            let ends =
+                ([spot[0] - half[0], spot[1] - half[1]], [spot[0] + half[0], spot[1] + half[1]]);
+            let free = (0..=12).all(|i| {
+                room.fits(&Rect::around(along(ends.0, ends.1, f64::from(i) / 12.0), 14.0, 14.0))
+            });
+            if !free {
+                continue;
+            }
+            // Right of the line's middle on its open side: above a falling line, below a rising one.
+            let lean = if half[1] > 0.0 { -1.0 } else { 1.0 };
+            let beside = [lean, -lean].map(|side| {
+                let drop = side * (0.55 * height + 2.0);
+                Rect::around(
+                    [
+                        spot[0] + width / 2.0 + 8.0 - if side == lean { 0.0 } else { width + 16.0 },
+                        spot[1] + drop,
+                    ],
+                    width,
+                    height,
+                )
+            });
+            if let Some(rect) = beside.into_iter().find(|rect| room.fits(rect)) {
+                room.take(rect);
+                room.cross(ends.0, ends.1);
+                self.guides.push(ends);
+                self.write(text, rect);
+                return;
+            }
+        }
+        // Without room for the line itself there is nothing to compare with; the label says so.
+        let text = Text { content: format!("({label}: no room)"), ..text };
+        homeless.push(Homeless { text, target: None });
+    }
+
+    /// Puts labels one under another to the right of the frame, each near the height of its target.
+    fn fill_gutter(&mut self, homeless: Vec<Homeless>) {
+        let height = 1.3 * LABEL;
+        let wanted: Vec<f64> = homeless
+            .iter()
+            .map(|h| h.target.map_or(self.frame.bottom(), |t| t[1]) - height / 2.0)
+            .collect();
+        let tops = spread(&wanted, height, self.frame.y, self.frame.bottom());
+        let left = self.frame.right() + LEADER;
+        for (Homeless { text, target }, top) in homeless.into_iter().zip(tops) {
+            let rect = Rect::new(left, top, text.width(), height);
+            if let Some(target) = target {
+                self.leaders.push((target, [left - 5.0, rect.center()[1]], text.color));
+            }
+            self.write(text, rect);
+        }
+    }
+
+    /// Writes `text` in the middle of the height of `rect`.
+    fn write(&mut self, text: Text, rect: Rect) {
+        let baseline = rect.center()[1] + CAP_HEIGHT / 2.0 * text.size;
+        self.labels.push(([rect.x, baseline], text.halo()));
+    }
+}
+
+fn grid(scale: &Scale, ticks: &[Tick], minor: bool) -> Vec<f64> {
+    let values = if minor { scale.minor() } else { ticks.iter().map(|tick| tick.value).collect() };
+    values.into_iter().map(|value| scale.at(value)).collect()
+}
+
+fn size(text: &Text) -> [f64; 2] {
+    [text.width(), (ASCENT + DESCENT) * text.size]
+}
+
+fn series_text(series: &Series) -> Text {
+    Text::new(&series.label, LABEL).bold().color(series.color.for_text())
+}
+
+fn note_text(series: &Series, datum: &Datum) -> Text {
+    Text::new(&datum.note, SMALLEST).color(series.color.for_text())
+}
+
+fn marker_text(label: &str) -> Text {
+    Text::new(label, TICK).color(MUTED)
+}
+
+fn better_text() -> Text {
+    Text::new("better", LABEL).bold().color(INK)
+}
+
+fn all_labels(chart: &Chart) -> impl Iterator<Item = Text> + '_ {
+    let no_room = |(_, label): &(f64, String)| marker_text(&format!("({label}: no room)"));
+    chart
+        .series
+        .iter()
+        .map(series_text)
+        .chain(chart.markers.iter().map(|marker| marker_text(&marker.label)))
+        .chain(chart.guides.iter().map(no_room))
+        .chain([better_text()])
+}

@@ -1,0 +1,134 @@
+//! Where labels fit: beside what they name, over nothing else.
+
+use crate::geometry::{Point, Rect};
+
+/// What is left of an area as things are put into it.
+#[derive(Clone, Debug)]
+pub(crate) struct Room {
+    area: Rect,
+    taken: Vec<Rect>,
+    lines: Vec<(Point, Point)>,
+}
+
+impl Room {
+    pub(crate) fn new(area: Rect) -> Self {
+        Self { area, taken: Vec::new(), lines: Vec::new() }
+    }
+
+    /// Takes a rectangle.
+    pub(crate) fn take(&mut self, rect: Rect) {
+        self.taken.push(rect);
+    }
+
+    /// Takes a line.
+    pub(crate) fn cross(&mut self, from: Point, to: Point) {
+        self.lines.push((from, to));
+    }
+
+    pub(crate) fn fits(&self, rect: &Rect) -> bool {
+        self.area.contains(rect)
+            && !self.taken.iter().any(|other| other.overlaps(rect))
+            && !self.lines.iter().any(|&(a, b)| rect.clip(a, b).is_some())
+    }
+
+    /// Takes the first of the candidates that fits.
+    pub(crate) fn place(&mut self, candidates: impl IntoIterator<Item = Rect>) -> Option<Rect> {
+        let rect = candidates.into_iter().find(|rect| self.fits(rect))?;
+        self.take(rect);
+        Some(rect)
+    }
+
+    /// Middles of a 16 × 16 grid over the area, the nearest to `aim` first.
+    pub(crate) fn spots(&self, aim: Point) -> Vec<Point> {
+        const CELLS: u32 = 16;
+        let part = |i: u32| (f64::from(i) + 0.5) / f64::from(CELLS);
+        let mut spots: Vec<Point> = (0..CELLS * CELLS)
+            .map(|i| {
+                [
+                    self.area.x + self.area.width * part(i % CELLS),
+                    self.area.y + self.area.height * part(i / CELLS),
+                ]
+            })
+            .collect();
+        let distance = |p: &Point| (p[0] - aim[0]).powi(2) + (p[1] - aim[1]).powi(2);
+        spots.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        spots
+    }
+}
+
+/// The places of a label of `width` × `height` around the point `at`, `gap` px from it, the best first.
+pub(crate) fn beside(at: Point, [width, height]: [f64; 2], gap: f64) -> [Rect; 8] {
+    let [x, y] = at;
+    let (left, right) = (x - gap - width, x + gap);
+    let (over, under) = (y - gap - height, y + gap);
+    let (middle_x, middle_y) = (x - width / 2.0, y - height / 2.0);
+    let near = 0.4 * gap;
+    [
+        [right, middle_y],
+        [x + near, y - near - height],
+        [x + near, y + near],
+        [middle_x, over],
+        [middle_x, under],
+        [x - near - width, y - near - height],
+        [x - near - width, y + near],
+        [left, middle_y],
+    ]
+    .map(|[x, y]| Rect::new(x, y, width, height))
+}
+
+/// The upper edges, in the order given, of boxes `height` tall that would like to start at `wanted`:
+/// none overlap, all lie between `low` and `high` (which must have room for them), and the sum of
+/// squared moves is least.
+pub(crate) fn spread(wanted: &[f64], height: f64, low: f64, high: f64) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..wanted.len()).collect();
+    order.sort_by(|&a, &b| wanted[a].total_cmp(&wanted[b]));
+    // With i box heights taken off the i-th box, not overlapping means not decreasing: a pool of
+    // neighbours that would decrease shares their mean.
+    let mut pools: Vec<(f64, usize)> = Vec::new();
+    for (rank, &i) in order.iter().enumerate() {
+        let mut pool = (wanted[i] - rank as f64 * height, 1);
+        while let Some(&(mean, count)) = pools.last() {
+            if mean < pool.0 {
+                break;
+            }
+            let sum = mean * count as f64 + pool.0 * pool.1 as f64;
+            pool = (sum / (count + pool.1) as f64, count + pool.1);
+            pools.pop();
+        }
+        pools.push(pool);
+    }
+    let last_start = high - wanted.len() as f64 * height;
+    let starts = pools.iter().flat_map(|&(mean, count)| std::iter::repeat_n(mean, count));
+    let mut places = vec![0.0; wanted.len()];
+    for ((rank, &i), start) in order.iter().enumerate().zip(starts) {
+        places[i] = start.min(last_start).max(low) + rank as f64 * height;
+    }
+    places
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spread_boxes_touch_at_most_and_stay_inside() {
+        assert_eq!(spread(&[50.0, 52.0, 10.0], 20.0, 0.0, 100.0), [41.0, 61.0, 10.0]);
+        assert_eq!(spread(&[95.0, 96.0], 20.0, 0.0, 100.0), [60.0, 80.0]);
+        assert_eq!(spread(&[-5.0, -9.0], 20.0, 0.0, 100.0), [20.0, 0.0]);
+        let mut many = spread(&[30.0; 5], 20.0, 0.0, 100.0);
+        many.sort_by(f64::total_cmp);
+        assert_eq!(many, [0.0, 20.0, 40.0, 60.0, 80.0]);
+    }
+
+    #[test]
+    fn a_label_avoids_boxes_lines_and_the_edge() {
+        let mut room = Room::new(Rect::new(0.0, 0.0, 100.0, 100.0));
+        room.take(Rect::new(60.0, 40.0, 40.0, 20.0));
+        room.cross([50.0, 0.0], [50.0, 45.0]);
+        let found = room.place(beside([50.0, 50.0], [30.0, 16.0], 8.0)).unwrap();
+        assert!(!found.overlaps(&Rect::new(60.0, 40.0, 40.0, 20.0)));
+        assert!(found.clip([50.0, 0.0], [50.0, 45.0]).is_none());
+        assert_eq!(room.place([found]), None, "the place is taken");
+        assert_eq!(room.place([Rect::new(90.0, 90.0, 30.0, 5.0)]), None, "over the edge");
+    }
+}
