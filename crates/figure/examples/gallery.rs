@@ -294,7 +294,7 @@ fn ray_tree() -> Plate {
             "1.6",
             "The tree of one pixel’s rays",
             "The tree has exactly as many nodes as rays were \
-            traced: 10.",
+            traced: 9.",
             true,
         )
         .panel(tree),

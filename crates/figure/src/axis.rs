@@ -183,7 +183,7 @@ impl Scale {
         if !self.log {
             return Vec::new();
         }
-        let roomy = self.per_unit().abs() >= 45.0;
+        let roomy = self.per_unit().abs() >= 60.0;
         self.decades()
             .flat_map(|k| (1..if roomy { 10 } else { 2 }).map(move |m| f64::from(m) * power(k)))
             .filter(|&value| self.shows(value))

@@ -71,12 +71,20 @@ impl BarChart {
         BAR * bars as f64 + GROUP_GAP
     }
 
-    fn longest(&self) -> f64 {
-        let of_category = |i: usize| {
-            let values = self.series.iter().map(|(_, _, values)| values[i]);
-            if self.stacked { values.sum() } else { values.fold(0.0, f64::max) }
-        };
-        (0..self.categories.len()).map(of_category).fold(0.0, f64::max)
+    /// The values printed at the bars of a category: of each, or of all together.
+    fn printed(&self, category: usize) -> Vec<f64> {
+        let values: Vec<f64> = self.series.iter().map(|(_, _, values)| values[category]).collect();
+        if self.stacked { vec![values.iter().sum()] } else { values }
+    }
+
+    fn all_printed(&self) -> impl Iterator<Item = f64> {
+        (0..self.categories.len()).flat_map(|category| self.printed(category))
+    }
+
+    fn widest_value(&self) -> f64 {
+        let widths = self.all_printed().map(|value| Text::new(number(value), TICK).width());
+        // The tick of the longest bar is centred on its end.
+        widths.fold(2.0 * TICK, f64::max)
     }
 
     /// The legend's entries with their places, and its height; a single series needs none.
@@ -103,30 +111,22 @@ impl BarChart {
     }
 
     fn draw_category(&self, canvas: &mut Canvas, scale: &Scale, category: usize, top: f64) {
-        let (mut end, mut total) = (scale.at(0.0), 0.0);
+        let zero = scale.at(0.0);
+        let mut before = 0.0;
         for (i, (_, color, values)) in self.series.iter().enumerate() {
-            let value = values[category];
-            let (left, y) =
-                if self.stacked { (end, top) } else { (scale.at(0.0), top + i as f64 * BAR) };
-            total += value;
-            end = if self.stacked { scale.at(total) } else { scale.at(value) };
-            canvas.rect(Rect::new(left, y + 2.0, end - left, BAR - 4.0), Style::fill(*color));
-            if !self.stacked {
-                write_value(canvas, value, [end, y]);
-            }
+            let length = scale.at(values[category]) - zero;
+            let (left, y) = if self.stacked { (before, top) } else { (0.0, top + i as f64 * BAR) };
+            canvas.rect(Rect::new(zero + left, y + 2.0, length, BAR - 4.0), Style::fill(*color));
+            before += length;
         }
-        if self.stacked {
-            write_value(canvas, total, [end, top]);
+        for (i, value) in self.printed(category).into_iter().enumerate() {
+            let baseline = top + (i as f64 + 0.5) * BAR + CAP_HEIGHT / 2.0 * TICK;
+            canvas.text([scale.at(value) + 8.0, baseline], Text::new(number(value), TICK));
         }
     }
 }
 
 const SWATCH: f64 = 18.0;
-
-fn write_value(canvas: &mut Canvas, value: f64, [end, top]: [f64; 2]) {
-    let baseline = top + BAR / 2.0 + CAP_HEIGHT / 2.0 * TICK;
-    canvas.text([end + 8.0, baseline], Text::new(number(value), TICK));
-}
 
 impl Panel for BarChart {
     fn height(&self, width: f64) -> f64 {
@@ -156,12 +156,9 @@ impl Panel for BarChart {
         let left = rect.x + names.iter().map(Text::width).fold(0.0, f64::max) + 14.0;
         let bottom = top + self.categories.len() as f64 * self.group_height() + GROUP_GAP;
         // The longest bar leaves room for its value.
-        let right = rect.right() - Text::new("0.00×10⁻⁰⁰", TICK).width();
-        let scale = Axis::linear("").between(0.0, self.longest().max(f64::MIN_POSITIVE)).scale(
-            [],
-            left,
-            right,
-        );
+        let right = rect.right() - self.widest_value() - 8.0;
+        let longest = self.all_printed().fold(f64::MIN_POSITIVE, f64::max);
+        let scale = Axis::linear("").between(0.0, longest).scale([], left, right);
         let below = bottom + 9.0 + CAP_HEIGHT * TICK;
         for tick in scale.ticks(4.2 * TICK) {
             let x = scale.at(tick.value);

@@ -280,6 +280,8 @@ fn zero_bands(layout: &Layout) -> Vec<Rect> {
     across.into_iter().chain(under).collect()
 }
 
+/// Half the width of an error bar's ends.
+pub(crate) const CAP: f64 = 5.0;
 /// Half the size of a mark.
 pub(crate) const MARK: f64 = 6.0;
 
@@ -308,7 +310,6 @@ fn is_bright(color: Color) -> bool {
 }
 
 fn draw_bars(canvas: &mut Canvas, datum: &Datum, color: Color, x: &Scale, y: &Scale) {
-    const CAP: f64 = 5.0;
     let stroke = Stroke::new(color, 1.8);
     let [cx, cy] = [x.at(datum.x.mid), y.at(datum.y.mid)];
     if datum.x.low < datum.x.high {

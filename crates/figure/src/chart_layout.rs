@@ -1,7 +1,7 @@
 //! Where everything in a chart goes: the frame, the axes, and each label.
 
 use crate::axis::{Scale, Tick};
-use crate::chart::{Chart, Datum, MARK, Series, Spread};
+use crate::chart::{CAP, Chart, Datum, MARK, Series, Spread};
 use crate::geometry::{Point, Rect, along};
 use crate::labels::{Room, beside, spread};
 use crate::shape::{Color, Text};
@@ -34,21 +34,19 @@ const LEADER: f64 = 22.0;
 impl Layout {
     /// Lays the chart out in `rect`.
     pub(crate) fn of(chart: &Chart, rect: Rect) -> Self {
-        let (layout, homeless) = Self::with_gutter(chart, rect, 0.0);
-        if homeless.is_empty() {
-            return layout;
+        // A narrower frame may leave more labels without a home: widen the gutter until it takes all.
+        let mut gutter = 0.0;
+        loop {
+            let mut layout = Self::framed(chart, rect, gutter);
+            let homeless = layout.place_labels(chart);
+            let needed =
+                homeless.iter().map(|label| label.text.width() + LEADER).fold(0.0, f64::max);
+            if needed <= gutter {
+                layout.fill_gutter(homeless);
+                return layout;
+            }
+            gutter = needed;
         }
-        // A narrower frame may make others homeless, so the gutter takes the longest of all.
-        let widest = all_labels(chart).map(|text| text.width()).fold(0.0, f64::max);
-        let (mut layout, homeless) = Self::with_gutter(chart, rect, widest + LEADER);
-        layout.fill_gutter(homeless);
-        layout
-    }
-
-    fn with_gutter(chart: &Chart, rect: Rect, gutter: f64) -> (Self, Vec<Homeless>) {
-        let mut layout = Self::framed(chart, rect, gutter);
-        let homeless = layout.place_labels(chart);
-        (layout, homeless)
     }
 
     fn framed(chart: &Chart, rect: Rect, gutter: f64) -> Self {
@@ -104,8 +102,8 @@ impl Layout {
     fn place_labels(&mut self, chart: &Chart) -> Vec<Homeless> {
         let mut room = self.room(chart);
         let mut homeless = Vec::new();
-        for series in &chart.series {
-            self.name_series(series, &mut room, &mut homeless);
+        for (owner, series) in chart.series.iter().enumerate() {
+            self.name_series(owner, series, &mut room, &mut homeless);
         }
         self.name_markers(chart, &mut room, &mut homeless);
         if chart.better {
@@ -114,10 +112,11 @@ impl Layout {
         for (slope, label) in &chart.guides {
             self.place_guide(chart, *slope, label, &mut room, &mut homeless);
         }
-        for series in &chart.series {
+        for (owner, series) in chart.series.iter().enumerate() {
             for datum in series.shown().filter(|datum| !datum.note.is_empty()) {
                 let text = note_text(series, datum);
-                if let Some(rect) = room.place(beside(self.place(datum), size(&text), MARK + 4.0)) {
+                let candidates = beside(self.place(datum), size(&text), MARK + 4.0);
+                if let Some(rect) = room.place_name(owner, MARK, candidates) {
                     self.write(text, rect);
                 }
             }
@@ -129,17 +128,20 @@ impl Layout {
     fn room(&mut self, chart: &Chart) -> Room {
         let frame = self.frame;
         let mut room = Room::new(frame.grown(-3.0));
-        for series in &chart.series {
+        for (i, series) in chart.series.iter().enumerate() {
+            let owner = Some(i);
             let places: Vec<Point> = series.shown().map(|datum| self.place(datum)).collect();
             if series.line.is_some() {
-                places.windows(2).for_each(|pair| room.cross(pair[0], pair[1]));
+                places.windows(2).for_each(|pair| room.cross(owner, pair[0], pair[1]));
             }
-            for (place, datum) in places.iter().zip(series.shown()) {
+            for (&[x, y], datum) in places.iter().zip(series.shown()) {
                 if series.marks {
-                    room.take(Rect::around(*place, 2.4 * MARK, 2.4 * MARK));
+                    room.take(owner, Rect::around([x, y], 2.4 * MARK, 2.4 * MARK));
                 }
-                room.cross([self.x.at(datum.x.low), place[1]], [self.x.at(datum.x.high), place[1]]);
-                room.cross([place[0], self.y.at(datum.y.low)], [place[0], self.y.at(datum.y.high)]);
+                let (left, right) = (self.x.at(datum.x.low), self.x.at(datum.x.high));
+                let (bottom, top) = (self.y.at(datum.y.low), self.y.at(datum.y.high));
+                room.take(owner, Rect::new(left, y - CAP, right - left, 2.0 * CAP));
+                room.take(owner, Rect::new(x - CAP, top, 2.0 * CAP, bottom - top));
             }
         }
         for marker in &chart.markers {
@@ -150,31 +152,37 @@ impl Layout {
                 let y = self.y.at(marker.value);
                 ([frame.x, y], [frame.right(), y])
             };
-            room.cross(ends.0, ends.1);
+            room.cross(None, ends.0, ends.1);
             self.markers.push(ends);
         }
         room
     }
 
-    /// A series is named beside its right end, else its left end, else any of its points.
-    fn name_series(&mut self, series: &Series, room: &mut Room, homeless: &mut Vec<Homeless>) {
-        let mut places: Vec<Point> = series.shown().map(|datum| self.place(datum)).collect();
+    /// A series is named beside its right end, else its left end, else anywhere along it.
+    fn name_series(
+        &mut self,
+        owner: usize,
+        series: &Series,
+        room: &mut Room,
+        homeless: &mut Vec<Homeless>,
+    ) {
+        let places: Vec<Point> = series.shown().map(|datum| self.place(datum)).collect();
         if places.is_empty() || series.label.is_empty() {
             return;
         }
-        places.sort_by(|a, b| b[0].total_cmp(&a[0]));
-        let end = places[0];
-        let last = places.len() - 1;
-        places[1..].rotate_right(usize::from(last > 0));
+        let mut anchors = places.clone();
+        if series.line.is_some() {
+            anchors.extend(places.windows(2).map(|pair| along(pair[0], pair[1], 0.5)));
+        }
+        anchors.sort_by(|a, b| b[0].total_cmp(&a[0]));
+        let end = anchors[0];
+        if let Some(left) = anchors.pop() {
+            anchors.insert(anchors.len().min(1), left);
+        }
         let text = series_text(series);
-        let candidates = places.iter().flat_map(|&place| {
-            beside(place, size(&text), MARK + 5.0).into_iter().chain(beside(
-                place,
-                size(&text),
-                2.0 * MARK + 5.0,
-            ))
-        });
-        match room.place(candidates) {
+        let near = MARK + 5.0;
+        let candidates = anchors.into_iter().flat_map(|anchor| beside(anchor, size(&text), near));
+        match room.place_name(owner, near + 2.0, candidates) {
             Some(rect) => self.write(text, rect),
             None => homeless.push(Homeless { text, target: Some(end) }),
         }
@@ -270,8 +278,8 @@ impl Layout {
                 )
             });
             if let Some(rect) = beside.into_iter().find(|rect| room.fits(rect)) {
-                room.take(rect);
-                room.cross(ends.0, ends.1);
+                room.take(None, rect.grown(4.0));
+                room.cross(None, ends.0, ends.1);
                 self.guides.push(ends);
                 self.write(text, rect);
                 return;
@@ -330,15 +338,4 @@ fn marker_text(label: &str) -> Text {
 
 fn better_text() -> Text {
     Text::new("better", LABEL).bold().color(INK)
-}
-
-fn all_labels(chart: &Chart) -> impl Iterator<Item = Text> + '_ {
-    let no_room = |(_, label): &(f64, String)| marker_text(&format!("({label}: no room)"));
-    chart
-        .series
-        .iter()
-        .map(series_text)
-        .chain(chart.markers.iter().map(|marker| marker_text(&marker.label)))
-        .chain(chart.guides.iter().map(no_room))
-        .chain([better_text()])
 }

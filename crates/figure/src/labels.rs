@@ -6,35 +6,72 @@ use crate::geometry::{Point, Rect};
 #[derive(Clone, Debug)]
 pub(crate) struct Room {
     area: Rect,
-    taken: Vec<Rect>,
-    lines: Vec<(Point, Point)>,
+    things: Vec<(Owner, Thing)>,
 }
+
+/// The number of the series a thing belongs to; labels and lines of the chart itself have none.
+pub(crate) type Owner = Option<usize>;
+
+#[derive(Clone, Copy, Debug)]
+enum Thing {
+    Box(Rect),
+    Line(Point, Point),
+}
+
+impl Thing {
+    fn meets(self, rect: &Rect) -> bool {
+        match self {
+            Self::Box(other) => other.overlaps(rect),
+            Self::Line(from, to) => rect.clip(from, to).is_some(),
+        }
+    }
+}
+
+/// Between two labels.
+const BETWEEN: f64 = 4.0;
 
 impl Room {
     pub(crate) fn new(area: Rect) -> Self {
-        Self { area, taken: Vec::new(), lines: Vec::new() }
+        Self { area, things: Vec::new() }
     }
 
     /// Takes a rectangle.
-    pub(crate) fn take(&mut self, rect: Rect) {
-        self.taken.push(rect);
+    pub(crate) fn take(&mut self, owner: Owner, rect: Rect) {
+        self.things.push((owner, Thing::Box(rect)));
     }
 
     /// Takes a line.
-    pub(crate) fn cross(&mut self, from: Point, to: Point) {
-        self.lines.push((from, to));
+    pub(crate) fn cross(&mut self, owner: Owner, from: Point, to: Point) {
+        self.things.push((owner, Thing::Line(from, to)));
     }
 
     pub(crate) fn fits(&self, rect: &Rect) -> bool {
-        self.area.contains(rect)
-            && !self.taken.iter().any(|other| other.overlaps(rect))
-            && !self.lines.iter().any(|&(a, b)| rect.clip(a, b).is_some())
+        self.area.contains(rect) && !self.things.iter().any(|(_, thing)| thing.meets(rect))
+    }
+
+    /// Takes the first of the candidates that fits and lies `apart` px from all other series, so that it
+    /// is not taken for their name.
+    pub(crate) fn place_name(
+        &mut self,
+        owner: usize,
+        apart: f64,
+        candidates: impl IntoIterator<Item = Rect>,
+    ) -> Option<Rect> {
+        let rect = candidates.into_iter().find(|rect| {
+            let around = rect.grown(apart);
+            let near_another = |(other, thing): &(Owner, Thing)| {
+                other.is_some_and(|other| other != owner) && thing.meets(&around)
+            };
+            self.fits(rect) && !self.things.iter().any(near_another)
+        })?;
+        self.take(None, rect.grown(BETWEEN));
+        Some(rect)
     }
 
     /// Takes the first of the candidates that fits.
     pub(crate) fn place(&mut self, candidates: impl IntoIterator<Item = Rect>) -> Option<Rect> {
         let rect = candidates.into_iter().find(|rect| self.fits(rect))?;
-        self.take(rect);
+        self.take(None, rect.grown(BETWEEN));
         Some(rect)
     }
 
@@ -123,12 +160,21 @@ mod tests {
     #[test]
     fn a_label_avoids_boxes_lines_and_the_edge() {
         let mut room = Room::new(Rect::new(0.0, 0.0, 100.0, 100.0));
-        room.take(Rect::new(60.0, 40.0, 40.0, 20.0));
-        room.cross([50.0, 0.0], [50.0, 45.0]);
+        room.take(None, Rect::new(60.0, 40.0, 40.0, 20.0));
+        room.cross(None, [50.0, 0.0], [50.0, 45.0]);
         let found = room.place(beside([50.0, 50.0], [30.0, 16.0], 8.0)).unwrap();
         assert!(!found.overlaps(&Rect::new(60.0, 40.0, 40.0, 20.0)));
         assert!(found.clip([50.0, 0.0], [50.0, 45.0]).is_none());
         assert_eq!(room.place([found]), None, "the place is taken");
         assert_eq!(room.place([Rect::new(90.0, 90.0, 30.0, 5.0)]), None, "over the edge");
+    }
+
+    #[test]
+    fn a_name_keeps_away_from_other_series_only() {
+        let mut room = Room::new(Rect::new(0.0, 0.0, 100.0, 100.0));
+        room.cross(Some(0), [0.0, 50.0], [100.0, 50.0]);
+        let just_below = Rect::new(40.0, 54.0, 20.0, 10.0);
+        assert_eq!(room.clone().place_name(1, 8.0, [just_below]), None, "it would name series 0");
+        assert_eq!(room.place_name(0, 8.0, [just_below]), Some(just_below));
     }
 }

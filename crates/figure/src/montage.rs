@@ -259,7 +259,8 @@ fn draw_pictures(
         canvas.rect(mark, Style::outline(Color::rgb(0, 0, 0).with_alpha(150), 6.0));
         canvas.rect(mark, Style::outline(frame, 3.0));
         canvas.picture(zoom, picture.crop(inset.x, inset.y, inset.width, inset.height));
-        canvas.rect(zoom.grown(-2.5), Style::outline(frame, 5.0));
+        // The frame reaches 1 px outwards, so that its round corners hide those of the picture.
+        canvas.rect(zoom.grown(-1.5), Style::outline(frame, 5.0));
     }
 }
 
