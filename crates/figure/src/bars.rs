@@ -2,7 +2,7 @@
 
 use crate::axis::{Axis, Scale};
 use crate::canvas::Canvas;
-use crate::geometry::Rect;
+use crate::geometry::{Point, Rect};
 use crate::number::number;
 use crate::plate::Panel;
 use crate::shape::{Anchor, Color, Stroke, Style, Text};
@@ -87,22 +87,22 @@ impl BarChart {
         widths.fold(2.0 * TICK, f64::max)
     }
 
-    /// The legend's entries with their places, and its height; a single series needs none.
-    fn legend(&self, width: f64) -> (Vec<([f64; 2], &str, Color)>, f64) {
+    /// The places of the legend's entries, and its height; a single series needs none.
+    fn legend(&self, width: f64) -> (Vec<Point>, f64) {
         let line = LEADING * LABEL;
-        let (mut x, mut y, mut entries) = (0.0, 0.0, Vec::new());
+        let (mut x, mut y, mut places) = (0.0, 0.0, Vec::new());
         if self.series.len() < 2 {
-            return (entries, 0.0);
+            return (places, 0.0);
         }
-        for (label, color, _) in &self.series {
+        for (label, _, _) in &self.series {
             let wide = SWATCH + 8.0 + Text::new(label, LABEL).width();
             if x > 0.0 && x + wide > width {
                 (x, y) = (0.0, y + line);
             }
-            entries.push(([x, y], label.as_str(), *color));
+            places.push([x, y]);
             x += wide + 28.0;
         }
-        (entries, y + line + 8.0)
+        (places, y + line + 8.0)
     }
 
     fn top(&self, width: f64) -> f64 {
@@ -142,10 +142,10 @@ impl Panel for BarChart {
             );
         }
         let top = rect.y + self.top(rect.width);
-        let (entries, legend_height) = self.legend(rect.width);
-        for ([x, y], label, color) in entries {
+        let (places, legend_height) = self.legend(rect.width);
+        for ([x, y], (label, color, _)) in places.into_iter().zip(&self.series) {
             let corner = [rect.x + x, top - legend_height + y];
-            canvas.rect(Rect::new(corner[0], corner[1], SWATCH, SWATCH), Style::fill(color));
+            canvas.rect(Rect::new(corner[0], corner[1], SWATCH, SWATCH), Style::fill(*color));
             canvas.text(
                 [corner[0] + SWATCH + 8.0, corner[1] + CAP_HEIGHT * LABEL + 2.0],
                 Text::new(label, LABEL),

@@ -57,10 +57,12 @@ const STYLE: &str = "\
 body{margin:0 auto;max-width:1400px;padding:40px 32px 80px;background:#fff;color:#1c1f24;font:17px/1.5 'DejaVu Sans',Verdana,sans-serif}
 h1{font-size:34px;margin:0 0 4px;color:#2b3a55}h2{font-size:25px;margin:48px 0 16px;border-bottom:2px solid #dfe3e8;padding-bottom:6px;color:#2b3a55}
 .summary{color:#555b66;margin:0}
-.sheet{display:grid;grid-template-columns:repeat(auto-fill,minmax(400px,1fr));gap:32px}
+.sheet{display:grid;grid-template-columns:repeat(3,minmax(0,1fr));gap:36px 32px}
+@media(max-width:1100px){.sheet{grid-template-columns:repeat(2,minmax(0,1fr))}}
+@media(max-width:700px){.sheet{grid-template-columns:minmax(0,1fr)}}
 figure{margin:0;display:flex;flex-direction:column}
-figure button{padding:0;border:1px solid #dfe3e8;background:#fff;cursor:zoom-in;height:300px;overflow:hidden}
-figure img{width:100%;height:100%;object-fit:contain;object-position:top;display:block}
+figure button{padding:0;border:1px solid #dfe3e8;background:#fff;cursor:zoom-in;width:100%;height:300px;overflow:hidden}
+figure img{width:100%;height:100%;object-fit:cover;object-position:top;display:block}
 h3{font-size:19px;line-height:1.3;margin:14px 0 6px}h3 span{font-weight:normal;color:#555b66}
 .badge{color:#fff;font-weight:bold;font-size:15px;border-radius:4px;padding:2px 8px;margin-right:8px;white-space:nowrap}
 p{margin:0 0 8px}details{color:#555b66;font-size:15px;white-space:pre-line}a{color:#0072b2}

@@ -2,7 +2,10 @@
 
 use std::sync::OnceLock;
 
-use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
+use image::{
+    ExtendedColorType, ImageEncoder,
+    codecs::png::{CompressionType, FilterType, PngEncoder},
+};
 
 /// A picture of sRGB pixels, row by row from the upper left corner.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -69,7 +72,8 @@ impl Picture {
     pub fn to_png(&self) -> Vec<u8> {
         let bytes: Vec<u8> = self.rgb.iter().flatten().copied().collect();
         let mut png = Vec::new();
-        PngEncoder::new(&mut png)
+        // Plates are mostly flat colour, which compresses best unfiltered.
+        PngEncoder::new_with_quality(&mut png, CompressionType::Default, FilterType::NoFilter)
             .write_image(&bytes, self.width, self.height, ExtendedColorType::Rgb8)
             .expect("a picture has as many bytes as its size says, and memory takes them");
         png
