@@ -1,6 +1,8 @@
 //! Axes: what they show, where a value lies on them, and their ticks.
 
+use crate::font::{Weight, text_width};
 use crate::number::{decimals, number, power_of_ten};
+use crate::style::TICK;
 
 /// One axis of a chart. It reaches over the data, plus what is asked for here.
 #[derive(Clone, Debug)]
@@ -37,7 +39,7 @@ impl Axis {
     pub(crate) fn scale(&self, data: impl IntoIterator<Item = f64>, from: f64, to: f64) -> Scale {
         let asked =
             self.include.iter().copied().chain(self.exact.into_iter().flat_map(|(a, b)| [a, b]));
-        let finite: Vec<f64> = data.into_iter().chain(asked).filter(|v| v.is_finite()).collect();
+        let finite: Vec<f64> = data.into_iter().chain(asked).filter(|&v| has_place(v)).collect();
         let zero = self.log && finite.iter().any(|&value| value <= 0.0);
         let shown = finite.iter().copied().filter(|&value| !self.log || value > 0.0);
         let (low, high) = shown
@@ -54,9 +56,11 @@ impl Axis {
     fn with_margin(&self, low: f64, high: f64) -> (f64, f64) {
         let measure = |value: f64| if self.log { value.log10() } else { value };
         let (mut a, mut b) = (measure(low), measure(high));
-        if a == b {
-            let half = if self.log || a == 0.0 { 0.5 } else { a.abs() / 2.0 };
-            return (a - half, b + half);
+        // Ends that rounding cannot tell apart are one value.
+        let least: f64 = if self.log { 1e-9 } else { 1e-290 };
+        if b - a <= least.max(1e-12 * a.abs().max(b.abs())) {
+            let half = if self.log || a.abs() < 1e-280 { 0.5 } else { a.abs() / 2.0 };
+            return (a - half, a + half);
         }
         let margin = 0.05 * (b - a);
         let keeps = |end: f64| {
@@ -72,11 +76,21 @@ impl Axis {
     }
 }
 
+/// Whether a chart can show `value`: it is a number, and not so large that differences overflow.
+pub(crate) fn has_place(value: f64) -> bool {
+    value.abs() <= 1e300
+}
+
 /// A labelled tick.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tick {
     pub(crate) value: f64,
     pub(crate) label: String,
+}
+
+/// The width of the widest label of some ticks.
+pub(crate) fn widest(ticks: &[Tick]) -> f64 {
+    ticks.iter().map(|tick| text_width(&tick.label, TICK, Weight::Regular)).fold(0.0, f64::max)
 }
 
 /// An axis laid along a stretch of the canvas.
@@ -151,6 +165,19 @@ impl Scale {
         ticks
     }
 
+    /// The labelled ticks of a level axis, whose labels stand side by side.
+    pub(crate) fn level_ticks(&self) -> Vec<Tick> {
+        let mut apart = 4.2 * TICK;
+        loop {
+            let ticks = self.ticks(apart);
+            let needed = widest(&ticks) + 0.8 * TICK;
+            if needed <= apart {
+                return ticks;
+            }
+            apart = needed;
+        }
+    }
+
     fn log_ticks(&self, apart: f64, most: f64) -> Vec<Tick> {
         let decades = self.decades();
         let inside = decades.clone().filter(|&k| self.shows(power(k))).count();
@@ -210,7 +237,9 @@ fn linear_ticks(low: f64, high: f64, most: f64) -> Vec<Tick> {
         .expect("ten times the power of ten below is above");
     let step = f64::from(mantissa) * power(exponent);
     let places = (-exponent).max(0) as usize;
-    let plain = low.abs().max(high.abs()) < 1e5 && places <= 4;
+    // Three digits, all that `number` prints, tell ticks apart only when the steps are large.
+    let largest = low.abs().max(high.abs());
+    let plain = largest >= 1000.0 * step || (largest < 1e5 && places <= 4);
     let slack = 1e-9 * (high - low) / step;
     let (first, last) = ((low / step - slack).ceil() as i64, (high / step + slack).floor() as i64);
     (first..=last)
@@ -241,6 +270,10 @@ mod tests {
         );
         assert_eq!(labels(&linear_ticks(-1.0, 1.0, 2.0)), ["−1", "0", "1"]);
         assert_eq!(labels(&linear_ticks(0.0, 3e6, 3.0)), ["0", "10⁶", "2×10⁶", "3×10⁶"]);
+        assert_eq!(
+            labels(&linear_ticks(200_000.0, 200_010.0, 2.0)),
+            ["200000", "200005", "200010"]
+        );
         assert_eq!(linear_ticks(0.0, 1.0, 10.0)[3].value, 0.3);
     }
 

@@ -160,7 +160,7 @@ impl Panel for BarChart {
         let longest = self.all_printed().fold(f64::MIN_POSITIVE, f64::max);
         let scale = Axis::linear("").between(0.0, longest).scale([], left, right);
         let below = bottom + 9.0 + CAP_HEIGHT * TICK;
-        for tick in scale.ticks(4.2 * TICK) {
+        for tick in scale.level_ticks() {
             let x = scale.at(tick.value);
             canvas.line([x, top], [x, bottom], Stroke::new(FAINT, 1.3));
             canvas.text([x, below], Text::new(tick.label, TICK).color(MUTED).centered());

@@ -1,6 +1,6 @@
 //! Charts of points and lines over two axes.
 
-use crate::axis::{Axis, Scale};
+use crate::axis::{Axis, Scale, has_place};
 use crate::canvas::Canvas;
 use crate::chart_layout::Layout;
 use crate::geometry::{Point, Rect};
@@ -38,10 +38,8 @@ pub struct Datum {
 }
 
 impl Datum {
-    fn is_finite(&self) -> bool {
-        [self.x, self.y]
-            .iter()
-            .all(|s| s.low.is_finite() && s.mid.is_finite() && s.high.is_finite())
+    fn has_place(&self) -> bool {
+        [self.x, self.y].iter().all(|s| [s.low, s.mid, s.high].into_iter().all(has_place))
     }
 }
 
@@ -111,7 +109,7 @@ impl Series {
 
     /// The points that have a place on a chart.
     pub(crate) fn shown(&self) -> impl Iterator<Item = &Datum> {
-        self.data.iter().filter(|datum| datum.is_finite())
+        self.data.iter().filter(|datum| datum.has_place())
     }
 }
 

@@ -1,7 +1,7 @@
 //! Where everything in a chart goes: the frame, the axes, and each label.
 
-use crate::axis::{Scale, Tick};
-use crate::chart::{CAP, Chart, Datum, MARK, Series, Spread};
+use crate::axis::{Scale, Tick, widest};
+use crate::chart::{CAP, Chart, Datum, MARK, Marker, Series, Spread};
 use crate::geometry::{Point, Rect, along};
 use crate::labels::{Room, beside, spread};
 use crate::shape::{Color, Text};
@@ -62,22 +62,26 @@ impl Layout {
         };
         let y = chart.y.scale(values(false, |datum| datum.y), y_bottom, y_top);
         let y_ticks = y.ticks(2.6 * TICK);
-        let widest =
-            y_ticks.iter().map(|tick| Text::new(&tick.label, TICK).width()).fold(0.0, f64::max);
         let title = if chart.y.title.is_empty() { 0.0 } else { 1.6 * LABEL };
-        let left = rect.x + title + widest + 9.0;
-        let right = rect.right() - gutter.max(1.6 * TICK);
+        let left = rect.x + title + widest(&y_ticks) + 9.0;
+        // The last label may be centred on the frame's corner.
+        let full_width = chart.x.scale(values(true, |datum| datum.x), left, rect.right());
+        let right = rect.right() - gutter.max(widest(&full_width.level_ticks()) / 2.0 + 2.0);
         let x = chart.x.scale(values(true, |datum| datum.x), left, right);
-        let x_ticks = x.ticks(4.2 * TICK);
+        let x_ticks = x.level_ticks();
+        let across = |marker: &Marker| {
+            let (x, y) = (x.at(marker.value), y.at(marker.value));
+            if marker.upright { ([x, y_bottom], [x, y_top]) } else { ([left, y], [right, y]) }
+        };
         Self {
             frame: Rect::new(left, y_top, right - left, y_bottom - y_top),
+            markers: chart.markers.iter().map(across).collect(),
             x,
             y,
             x_ticks,
             y_ticks,
             labels: Vec::new(),
             guides: Vec::new(),
-            markers: Vec::new(),
             leaders: Vec::new(),
             better: None,
         }
@@ -125,9 +129,8 @@ impl Layout {
     }
 
     /// The frame, with everything taken that is drawn from data.
-    fn room(&mut self, chart: &Chart) -> Room {
-        let frame = self.frame;
-        let mut room = Room::new(frame.grown(-3.0));
+    fn room(&self, chart: &Chart) -> Room {
+        let mut room = Room::new(self.frame.grown(-3.0));
         for (i, series) in chart.series.iter().enumerate() {
             let owner = Some(i);
             let places: Vec<Point> = series.shown().map(|datum| self.place(datum)).collect();
@@ -144,17 +147,7 @@ impl Layout {
                 room.take(owner, Rect::new(x - CAP, top, 2.0 * CAP, bottom - top));
             }
         }
-        for marker in &chart.markers {
-            let ends = if marker.upright {
-                let x = self.x.at(marker.value);
-                ([x, frame.bottom()], [x, frame.y])
-            } else {
-                let y = self.y.at(marker.value);
-                ([frame.x, y], [frame.right(), y])
-            };
-            room.cross(None, ends.0, ends.1);
-            self.markers.push(ends);
-        }
+        self.markers.iter().for_each(|&(from, to)| room.cross(None, from, to));
         room
     }
 
@@ -339,3 +332,6 @@ fn marker_text(label: &str) -> Text {
 fn better_text() -> Text {
     Text::new("better", LABEL).bold().color(INK)
 }
+
+#[cfg(test)]
+mod tests;

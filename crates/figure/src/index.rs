@@ -61,8 +61,8 @@ h1{font-size:34px;margin:0 0 4px;color:#2b3a55}h2{font-size:25px;margin:48px 0 1
 @media(max-width:1100px){.sheet{grid-template-columns:repeat(2,minmax(0,1fr))}}
 @media(max-width:700px){.sheet{grid-template-columns:minmax(0,1fr)}}
 figure{margin:0;display:flex;flex-direction:column}
-figure button{padding:0;border:1px solid #dfe3e8;background:#fff;cursor:zoom-in;width:100%;height:300px;overflow:hidden}
-figure img{width:100%;height:100%;object-fit:cover;object-position:top;display:block}
+figure button{padding:0;border:1px solid #dfe3e8;background:#fff;cursor:zoom-in;width:100%;height:300px;overflow:hidden;display:flex;align-items:flex-start}
+figure img{width:100%;height:auto;display:block}
 h3{font-size:19px;line-height:1.3;margin:14px 0 6px}h3 span{font-weight:normal;color:#555b66}
 .badge{color:#fff;font-weight:bold;font-size:15px;border-radius:4px;padding:2px 8px;margin-right:8px;white-space:nowrap}
 p{margin:0 0 8px}details{color:#555b66;font-size:15px;white-space:pre-line}a{color:#0072b2}
