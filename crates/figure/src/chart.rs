@@ -19,6 +19,20 @@ pub struct Spread {
     pub high: f64,
 }
 
+impl Spread {
+    /// The least, the median (of an even number, the mean of the middle two) and the greatest of some runs.
+    ///
+    /// # Panics
+    /// If there is no run.
+    pub fn of_runs(runs: &[f64]) -> Self {
+        assert!(!runs.is_empty(), "a measurement has at least one run");
+        let mut sorted = runs.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let middle = (sorted[(sorted.len() - 1) / 2] + sorted[sorted.len() / 2]) / 2.0;
+        Self { low: sorted[0], mid: middle, high: sorted[sorted.len() - 1] }
+    }
+}
+
 impl From<f64> for Spread {
     /// A value without repetitions.
     fn from(value: f64) -> Self {

@@ -6,6 +6,28 @@
 //!
 //! A figure stacks [`Panel`]s (a [`Montage`], a [`Chart`], a [`SpeedError`], a [`Tree`], a [`Drawing`],
 //! a [`Row`] of them) in a [`Plate`], which adds the title, the claim with its verdict, and the caption.
+//! ```
+//! use lancer_figure::{HeatScale, Inset, Montage, Picture, Plate, Tile, method_color};
+//!
+//! let picture = |grey: u8| Picture::from_fn(96, 64, |x, _| [grey, x as u8, grey]);
+//! let errors = vec![0.01; 96 * 64];
+//! let scale = HeatScale::log("|error|", 1e-4, 1.0);
+//! let plate = Plate::new("2.9", "Penumbra", "Beams show no noise.", errors[0] < 0.05)
+//!     .panel(
+//!         Montage::new()
+//!             .tile(Tile::new("Reference", picture(90)).color(method_color("reference")))
+//!             .tile(Tile::new("Beams", picture(80)).color(method_color("precise")).subtitle("0.4 s"))
+//!             .tile(Tile::new("Error", scale.paint(96, 64, &errors)))
+//!             .color_bar(&scale)
+//!             .inset(Inset::new(10, 20, 24, 16)),
+//!     )
+//!     .note("Reference", "closed form");
+//! let canvas = plate.canvas();
+//! assert!(canvas.faults().is_empty());
+//! let (png, svg) = (canvas.to_png(1.0), canvas.to_svg());
+//! # assert!(png.starts_with(b"\x89PNG") && svg.ends_with("</svg>\n"));
+//! ```
+//!
 //! This crate knows no renderer: pictures come in as 8-bit RGB, measurements as `f64`.
 
 mod axis;

@@ -3,6 +3,7 @@
 use crate::axis::Axis;
 use crate::canvas::Canvas;
 use crate::chart::{Chart, Series, Spread};
+use crate::data::{Table, Value};
 use crate::geometry::Rect;
 use crate::palette::method_color;
 use crate::plate::{Panel, Row};
@@ -70,6 +71,23 @@ impl SpeedError {
         Self { slope: Some((slope, label.into())), ..self }
     }
 
+    /// The measurements as a tidy table, one point a row.
+    pub fn table(&self) -> Table {
+        let seconds = ["seconds_min", "seconds_median", "seconds_max"];
+        let columns = ["method", "label", "knob", &self.work_unit].into_iter().chain(seconds);
+        let mut table = Table::new(columns.chain([self.error_name.as_str()]));
+        for curve in &self.curves {
+            for point in &curve.points {
+                let Spread { low, mid, high } = point.seconds;
+                let names = [curve.method.as_str(), &curve.label, &point.knob].map(Value::from);
+                let numbers =
+                    [point.work.into(), low.into(), mid.into(), high.into(), point.error.into()];
+                table.push(names.into_iter().chain(numbers));
+            }
+        }
+        table
+    }
+
     fn row(&self) -> Row {
         let work = |point: &CurvePoint| Spread::from(point.work as f64);
         let seconds = |point: &CurvePoint| point.seconds;
@@ -107,5 +125,64 @@ impl Panel for SpeedError {
 
     fn draw(&self, canvas: &mut Canvas, rect: Rect) {
         self.row().draw(canvas, rect);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chart() -> SpeedError {
+        let point = |n: u64, error: f64| CurvePoint {
+            knob: n.to_string(),
+            seconds: Spread::of_runs(&[0.02 * n as f64, 0.01 * n as f64, 0.04 * n as f64]),
+            work: 1000 * n,
+            error,
+        };
+        let curve = |method: &str, label: &str, factor: f64| MethodCurve {
+            method: method.into(),
+            label: label.into(),
+            points: [1, 4, 16].map(|n| point(n, factor / (n as f64).sqrt())).to_vec(),
+        };
+        SpeedError::new("rays", "RMSE")
+            .curve(curve("distributed", "random", 0.3))
+            .curve(curve("distributed", "stratified", 0.1))
+            .curve(curve("precise", "beams", 0.0))
+            .reference_error(1e-4)
+            .slope(-0.5, "slope −1/2")
+    }
+
+    fn drawn() -> Canvas {
+        let height = chart().height(1300.0);
+        let mut canvas = Canvas::new(1300.0, height);
+        chart().draw(&mut canvas, Rect::new(0.0, 0.0, 1300.0, height));
+        canvas
+    }
+
+    #[test]
+    fn both_panels_name_every_method() {
+        let (canvas, svg) = (drawn(), drawn().to_svg());
+        assert_eq!(canvas.faults(), []);
+        for label in ["random", "stratified", "beams", "better", "RMSE"] {
+            assert_eq!(svg.matches(&format!("aria-label=\"{label}\"")).count(), 2, "{label}");
+        }
+        assert!(svg.contains("work (rays)") && svg.contains("time (s)"));
+        assert!(svg.contains("stroke-dasharray=\"10 6\""), "the second of a method is dashed");
+    }
+
+    #[test]
+    fn the_table_has_a_row_for_each_point() {
+        let csv = chart().table().to_csv();
+        let mut lines = csv.lines();
+        let header = "method,label,knob,rays,seconds_min,seconds_median,seconds_max,RMSE";
+        assert_eq!(lines.next(), Some(header));
+        assert_eq!(lines.next(), Some("distributed,random,1,1000,0.01,0.02,0.04,0.3"));
+        assert_eq!(lines.count(), 8);
+    }
+
+    #[test]
+    fn the_median_of_an_even_number_of_runs_lies_between() {
+        let runs = Spread::of_runs(&[4.0, 1.0, 2.0, 100.0]);
+        assert_eq!(runs, Spread { low: 1.0, mid: 3.0, high: 100.0 });
     }
 }
