@@ -105,10 +105,7 @@ impl Layout {
     /// Places all labels, the important ones first, and returns those that must go elsewhere.
     fn place_labels(&mut self, chart: &Chart) -> Vec<Homeless> {
         let mut room = self.room(chart);
-        let mut homeless = Vec::new();
-        for (owner, series) in chart.series.iter().enumerate() {
-            self.name_series(owner, series, &mut room, &mut homeless);
-        }
+        let mut homeless = self.name_series(chart, &mut room);
         self.name_markers(chart, &mut room, &mut homeless);
         if chart.better {
             self.place_better(&mut room, &mut homeless);
@@ -151,34 +148,57 @@ impl Layout {
         room
     }
 
-    /// A series is named beside its right end, else its left end, else anywhere along it.
-    fn name_series(
-        &mut self,
-        owner: usize,
-        series: &Series,
-        room: &mut Room,
-        homeless: &mut Vec<Homeless>,
-    ) {
-        let places: Vec<Point> = series.shown().map(|datum| self.place(datum)).collect();
-        if places.is_empty() || series.label.is_empty() {
-            return;
+    /// Names each series beside its right end, else its left end, else anywhere along it, else at the end
+    /// of a leader; returns the names without room.
+    fn name_series(&mut self, chart: &Chart, room: &mut Room) -> Vec<Homeless> {
+        let apart = MARK + 7.0;
+        let mut unnamed = Vec::new();
+        for (owner, series) in chart.series.iter().enumerate().filter(|(_, s)| !s.label.is_empty())
+        {
+            let anchors = self.anchors(series);
+            let Some(&end) = anchors.first() else { continue };
+            let text = series_text(series);
+            let candidates =
+                anchors.into_iter().flat_map(|at| beside(at, size(&text), apart - 2.0));
+            match room.place_name(owner, apart, candidates) {
+                Some(rect) => self.write(text, rect),
+                None => unnamed.push((owner, end, text)),
+            }
         }
+        let mut homeless = Vec::new();
+        for (owner, end, text) in unnamed {
+            // Where the way to the right of the frame is short, names stand in line there.
+            let reach = (self.frame.right() - end[0]).min(200.0) - 60.0;
+            let [width, height] = size(&text);
+            let spots = room.spots(end).into_iter().map(|spot| Rect::around(spot, width, height));
+            let within = spots.filter(|rect| {
+                let foot = rect.nearest(end);
+                (foot[0] - end[0]).hypot(foot[1] - end[1]) < reach
+            });
+            match room.place_led(owner, apart, end, within.collect::<Vec<_>>()) {
+                Some((rect, foot)) => {
+                    self.leaders.push((end, foot, text.color));
+                    self.write(text, rect);
+                }
+                None => homeless.push(Homeless { text, target: Some(end) }),
+            }
+        }
+        homeless
+    }
+
+    /// Where a series may be named: its right end, its left end, its other points and the middles between,
+    /// from the right.
+    fn anchors(&self, series: &Series) -> Vec<Point> {
+        let places: Vec<Point> = series.shown().map(|datum| self.place(datum)).collect();
         let mut anchors = places.clone();
         if series.line.is_some() {
             anchors.extend(places.windows(2).map(|pair| along(pair[0], pair[1], 0.5)));
         }
         anchors.sort_by(|a, b| b[0].total_cmp(&a[0]));
-        let end = anchors[0];
         if let Some(left) = anchors.pop() {
             anchors.insert(anchors.len().min(1), left);
         }
-        let text = series_text(series);
-        let near = MARK + 5.0;
-        let candidates = anchors.into_iter().flat_map(|anchor| beside(anchor, size(&text), near));
-        match room.place_name(owner, near + 2.0, candidates) {
-            Some(rect) => self.write(text, rect),
-            None => homeless.push(Homeless { text, target: Some(end) }),
-        }
+        anchors
     }
 
     /// A marker is named along its line, the far end first.

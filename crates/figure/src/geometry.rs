@@ -68,6 +68,11 @@ impl Rect {
             && other.y < self.bottom()
     }
 
+    /// The point of the rectangle nearest to `point`.
+    pub(crate) fn nearest(&self, [x, y]: Point) -> Point {
+        [x.clamp(self.x, self.right()), y.clamp(self.y, self.bottom())]
+    }
+
     /// The part of the segment from `a` to `b` that lies within, as its two ends.
     pub fn clip(&self, a: Point, b: Point) -> Option<(Point, Point)> {
         let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
@@ -93,6 +98,16 @@ pub(crate) fn along(a: Point, b: Point, part: f64) -> Point {
     [a[0] + (b[0] - a[0]) * part, a[1] + (b[1] - a[1]) * part]
 }
 
+/// Whether the segments from `a` to `b` and from `c` to `d` have a point in common, but for parallel ones.
+pub(crate) fn segments_cross(a: Point, b: Point, c: Point, d: Point) -> bool {
+    let side = |p: Point, q: Point, r: Point| {
+        (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
+    };
+    side(a, b, c) * side(a, b, d) <= 0.0
+        && side(c, d, a) * side(c, d, b) <= 0.0
+        && (side(a, b, c) != 0.0 || side(a, b, d) != 0.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -102,6 +117,16 @@ mod tests {
         let left = Rect::new(0.0, 0.0, 10.0, 10.0);
         assert!(!left.overlaps(&Rect::new(10.0, 0.0, 5.0, 10.0)));
         assert!(left.overlaps(&Rect::new(9.9, 9.9, 5.0, 5.0)));
+    }
+
+    #[test]
+    fn segments_cross_within_both() {
+        let cross = |c, d| segments_cross([0.0, 0.0], [10.0, 0.0], c, d);
+        assert!(cross([5.0, -1.0], [5.0, 1.0]));
+        assert!(cross([10.0, 0.0], [12.0, 5.0]), "touching at the end");
+        assert!(!cross([11.0, -1.0], [11.0, 1.0]));
+        assert!(!cross([5.0, 1.0], [5.0, 2.0]));
+        assert!(!cross([0.0, 1.0], [10.0, 1.0]));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Where labels fit: beside what they name, over nothing else.
 
-use crate::geometry::{Point, Rect};
+use crate::geometry::{Point, Rect, segments_cross};
 
 /// What is left of an area as things are put into it.
 #[derive(Clone, Debug)]
@@ -23,6 +23,13 @@ impl Thing {
         match self {
             Self::Box(other) => other.overlaps(rect),
             Self::Line(from, to) => rect.clip(from, to).is_some(),
+        }
+    }
+
+    fn is_crossed(self, a: Point, b: Point) -> bool {
+        match self {
+            Self::Box(rect) => rect.clip(a, b).is_some(),
+            Self::Line(from, to) => segments_cross(a, b, from, to),
         }
     }
 }
@@ -57,15 +64,40 @@ impl Room {
         apart: f64,
         candidates: impl IntoIterator<Item = Rect>,
     ) -> Option<Rect> {
-        let rect = candidates.into_iter().find(|rect| {
-            let around = rect.grown(apart);
-            let near_another = |(other, thing): &(Owner, Thing)| {
-                other.is_some_and(|other| other != owner) && thing.meets(&around)
-            };
-            self.fits(rect) && !self.things.iter().any(near_another)
-        })?;
+        let rect = candidates.into_iter().find(|rect| self.names(owner, apart, rect))?;
         self.take(None, rect.grown(BETWEEN));
         Some(rect)
+    }
+
+    /// Takes the first of the candidates that fits as a name and that a straight leader from `at`
+    /// reaches over nothing but the series itself; returns it and where the leader ends.
+    pub(crate) fn place_led(
+        &mut self,
+        owner: usize,
+        apart: f64,
+        at: Point,
+        candidates: impl IntoIterator<Item = Rect>,
+    ) -> Option<(Rect, Point)> {
+        let found = candidates.into_iter().find_map(|rect| {
+            let foot = rect.grown(BETWEEN).nearest(at);
+            let over = |(other, thing): &(Owner, Thing)| {
+                *other != Some(owner) && thing.is_crossed(at, foot)
+            };
+            let clear = !self.things.iter().any(over);
+            (clear && self.names(owner, apart, &rect)).then_some((rect, foot))
+        })?;
+        self.cross(None, at, found.1);
+        self.take(None, found.0.grown(BETWEEN));
+        Some(found)
+    }
+
+    /// Whether a label fits and would not be taken for the name of another series.
+    fn names(&self, owner: usize, apart: f64, rect: &Rect) -> bool {
+        let around = rect.grown(apart);
+        let near_another = |(other, thing): &(Owner, Thing)| {
+            other.is_some_and(|other| other != owner) && thing.meets(&around)
+        };
+        self.fits(rect) && !self.things.iter().any(near_another)
     }
 
     /// Takes the first of the candidates that fits.
@@ -75,9 +107,9 @@ impl Room {
         Some(rect)
     }
 
-    /// Middles of a 16 × 16 grid over the area, the nearest to `aim` first.
+    /// Middles of a 32 × 32 grid over the area, the nearest to `aim` first.
     pub(crate) fn spots(&self, aim: Point) -> Vec<Point> {
-        const CELLS: u32 = 16;
+        const CELLS: u32 = 32;
         let part = |i: u32| (f64::from(i) + 0.5) / f64::from(CELLS);
         let mut spots: Vec<Point> = (0..CELLS * CELLS)
             .map(|i| {
@@ -175,6 +207,10 @@ mod tests {
         room.cross(Some(0), [0.0, 50.0], [100.0, 50.0]);
         let just_below = Rect::new(40.0, 54.0, 20.0, 10.0);
         assert_eq!(room.clone().place_name(1, 8.0, [just_below]), None, "it would name series 0");
+        let led = Rect::new(40.0, 70.0, 20.0, 10.0);
+        assert_eq!(room.clone().place_led(1, 8.0, [50.0, 30.0], [led]), None, "over series 0");
+        let (_, foot) = room.clone().place_led(1, 8.0, [50.0, 55.0], [led]).unwrap();
+        assert_eq!(foot, [50.0, 70.0 - BETWEEN]);
         assert_eq!(room.place_name(0, 8.0, [just_below]), Some(just_below));
     }
 }
