@@ -272,7 +272,7 @@ impl Layout {
             let ends =
                 ([spot[0] - half[0], spot[1] - half[1]], [spot[0] + half[0], spot[1] + half[1]]);
             let free = (0..=12).all(|i| {
-                room.fits(&Rect::around(along(ends.0, ends.1, f64::from(i) / 12.0), 14.0, 14.0))
+                room.fits(&Rect::around(along(ends.0, ends.1, f64::from(i) / 12.0), 26.0, 26.0))
             });
             if !free {
                 continue;
@@ -290,7 +290,7 @@ impl Layout {
                     height,
                 )
             });
-            if let Some(rect) = beside.into_iter().find(|rect| room.fits(rect)) {
+            if let Some(rect) = beside.into_iter().find(|rect| room.fits(&rect.grown(8.0))) {
                 room.take(None, rect.grown(4.0));
                 room.cross(None, ends.0, ends.1);
                 self.guides.push(ends);
