@@ -156,7 +156,7 @@ mod tests {
             PixelSampling { pattern: Pattern::Jittered, samples: 1, seed }
                 .points(x, 0)
                 .next()
-                .map(|p| p.fract())
+                .map(DVec2::fract)
         };
         assert_ne!(first(0, 0), first(1, 0));
         assert_ne!(first(0, 0), first(0, 1));
