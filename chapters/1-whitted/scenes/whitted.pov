@@ -27,8 +27,8 @@ Light(<5, 6, -4>, 25)
 
 polygon {
   5, <-6, 0, -4>, <6, 0, -4>, <6, 0, 14>, <-6, 0, 14>, <-6, 0, -4>
-  // A checker in space; a hair's shift keeps y = 0 off its boundary.
-  pigment { checker rgb <0.75, 0.08, 0.06>, rgb <0.85, 0.72, 0.10> translate -1e-4*y scale <1, 1, 1> }
+  // A checker in space; a hair's shift keeps y = 0 off its boundary. Negating z swaps the colours.
+  pigment { checker rgb <0.85, 0.72, 0.10>, rgb <0.75, 0.08, 0.06> translate -1e-4*y }
   Surface(0.1, 0, 1, 0)
 }
 
