@@ -176,7 +176,8 @@ mod tests {
                 })
             },
         };
-        let contenders = vec![contender("a", 1, 3.0), contender("a", 2, 2.5), contender("b", 1, 2.0)];
+        let contenders =
+            vec![contender("a", 1, 3.0), contender("a", 2, 2.5), contender("b", 1, 2.0)];
         let (study, outcomes) = Study::measure("tests", 3, contenders, |&outcome: &f64| {
             vec![("error", outcome - 2.0), ("square", (outcome - 2.0).powi(2))]
         });
