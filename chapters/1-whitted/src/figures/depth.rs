@@ -8,7 +8,7 @@ use lancer_core::sampling::PixelSampling;
 use lancer_core::scene::Scene;
 use lancer_figure::{
     Axis, Chart, Contender, Effort, Finished, Montage, Plate, Row, Series, Study, Tile,
-    category_color, method_color,
+    category_color, method_color, number,
 };
 use lancer_whitted::{AtLimit, Call, RayCounts, Recorder, Settings};
 
@@ -45,6 +45,7 @@ impl AddAssign for WeightLeft {
 
 const LIMITS: [(AtLimit, &str); 3] =
     [(AtLimit::Black, "black"), (AtLimit::Ambient, "ambient"), (AtLimit::Background, "background")];
+const REFERENCE_DEPTH: u32 = 14;
 const DEPTHS: [u32; 9] = [0, 1, 2, 3, 4, 5, 6, 8, 10];
 
 pub fn make(effort: Effort) -> Finished {
@@ -52,7 +53,7 @@ pub fn make(effort: Effort) -> Finished {
     let size = effort.pick(ImageSize::new(48, 48), ImageSize::new(240, 240));
     let render = |settings| render(&scene, settings, size);
     let unlimited = |max_depth| Settings { max_depth, min_weight: 0.0, at_limit: AtLimit::Black };
-    let reference = render(unlimited(24));
+    let reference = render(unlimited(REFERENCE_DEPTH));
     let pixels = size.pixels() as f64;
     let residual = reference.1.weight / pixels;
 
@@ -94,8 +95,9 @@ pub fn make(effort: Effort) -> Finished {
     let fall = study.error("black", "1", "mean_abs") / study.error("black", "8", "mean_abs");
     let holds = most / least < 3.0 && fall > 50.0;
     let claim = format!(
-        "The error follows the weight that each bounce leaves: from depth 1 to 8 both fall {fall:.0}-fold, \
-         and the light lost per weight stays between {least:.2} and {most:.2}."
+        "The error follows the weight that each bounce leaves: from depth 1 to 8 both fall by a factor of \
+         {}, and the light lost per weight stays between {least:.2} and {most:.2}.",
+        number(fall)
     );
 
     let mut montage = Montage::new().columns(5);
@@ -106,7 +108,7 @@ pub fn make(effort: Effort) -> Finished {
         let error = study.error("black", &knob, "RMSE");
         montage = montage.tile(
             Tile::new(format!("depth {depth}"), shown(&outcomes[k].0))
-                .subtitle(format!("{rays:.1} rays/pixel, RMSE {error:.1e}"))
+                .subtitle(format!("{rays:.1} rays/pixel, RMSE {}", number(error)))
                 .color(method_color("whitted")),
         );
     }
@@ -137,8 +139,9 @@ pub fn make(effort: Effort) -> Finished {
         .note("Method", "algo:lr, eq:recursion; the work counts all rays, shadow rays included")
         .note("Settings", format!("scene whitted, {size}, 1 sample per pixel, no minimum weight"))
         .note("Reference", format!(
-            "algo:lr to depth 24; the weight it leaves, {residual:.0e} per pixel, bounds its own error \
-             per unit of radiance"
+            "algo:lr to depth {REFERENCE_DEPTH}; the weight it leaves, {} per pixel, bounds its own error \
+                 per unit of radiance",
+                number(residual)
         ));
     Finished { plate, data: study.table() }
 }

@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 use lancer_core::optics::{reflect, refract};
 use lancer_figure::{
     Axis, Chart, Drawing, Effort, Finished, INK, LABEL, MUTED, Pen, Plate, Row, Series, Stroke,
-    Table, Text, category_color,
+    Table, Text, category_color, number,
 };
 
 /// Pairs of refractive indices (n₁, n₂) and their names.
@@ -61,8 +61,9 @@ pub fn make(effort: Effort) -> Finished {
 
     let holds = largest <= 4.0 * f64::EPSILON && total_is_right && near_data_holds;
     let claim = format!(
-        "n₁ sin θ₁ = n₂ sin θ₂ to {largest:.0e} at every angle, and beyond the critical angle there is \
-         no refracted ray: all of it is reflected."
+        "n₁ sin θ₁ = n₂ sin θ₂ to {} at every angle, and beyond the critical angle there is \
+         no refracted ray: all of it is reflected.",
+        number(largest)
     );
     let plate = Plate::new("1.5", "Descartes' law and total reflection", claim, holds)
         .panel(Row::new().panel(1.0, interface()).panel(1.0, curves))
@@ -164,8 +165,8 @@ fn interface() -> Drawing {
                 }
             }
             if !label.is_empty() {
-                let middle = [0.35 * source[0] + 0.65 * foot[0], 0.35 * source[1]];
-                pen.label(middle, [0.0, 0.0], Text::new(label, LABEL));
+                let near_foot = [0.2 * source[0] + 0.8 * foot[0], 0.2 * source[1]];
+                pen.label(near_foot, [0.0, 0.0], Text::new(label, LABEL));
             }
         }
         pen.dot(source, 7.0, INK);
@@ -177,8 +178,8 @@ fn interface() -> Drawing {
             Text::new("refracted", LABEL).color(category_color(0).for_text()),
         );
         pen.label(
-            [2.2, -0.12],
-            [0.0, 14.0],
+            [2.55, -0.3],
+            [0.0, 0.0],
             Text::new("totally reflected", LABEL).color(category_color(3).for_text()),
         );
     };

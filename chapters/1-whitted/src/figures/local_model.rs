@@ -9,7 +9,9 @@ use lancer_core::image::{Image, ImageSize};
 use lancer_core::intersector::Intersector;
 use lancer_core::scene::Scene;
 use lancer_core::world::{PointSource, World};
-use lancer_figure::{BarChart, Effort, Finished, Montage, Plate, Row, Table, Tile, category_color};
+use lancer_figure::{
+    BarChart, Effort, Finished, Montage, Plate, Row, Table, Tile, category_color, number,
+};
 use lancer_whitted::{RayKind, RayTree, Settings, Whitted};
 
 use super::shown;
@@ -32,8 +34,9 @@ pub fn make(effort: Effort) -> Finished {
     let exponent = scene.materials.iter().map(|material| material.shininess).fold(1.0, f64::max);
     let holds = largest <= 2.0 * exponent * f64::EPSILON * brightest;
     let claim = format!(
-        "The six terms add up to Whitted's picture: the largest difference of any pixel is {largest:.1e}, \
-         rounding."
+        "The six terms add up to Whitted's picture: no pixel differs by more than {}, \
+         which is rounding.",
+        number(largest)
     );
 
     let mut montage = Montage::new().columns(3);
@@ -60,7 +63,8 @@ pub fn make(effort: Effort) -> Finished {
         data.push([(*name).into(), (*value).into(), (value / total).into()]);
     }
     let bars = BarChart::new("mean of the picture (radiance)", TERMS)
-        .title("What each term changes")
+        .title("What each term changes (« ambient » with the background)")
+        .stacked()
         .series("adds", category_color(0), means.iter().map(|m| m.max(0.0)).collect::<Vec<_>>())
         .series(
             "takes",

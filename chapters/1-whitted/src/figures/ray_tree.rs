@@ -18,8 +18,8 @@ use super::{shown, whitted_picture};
 use crate::scenes;
 
 const SIZE: ImageSize = ImageSize::new(256, 256);
-/// A pixel whose ray enters the glass ball, leaves it and meets the mirror.
-const PIXEL: (u32, u32) = (137, 119);
+/// A pixel whose ray passes through glass to plastic, the mirror and the floor.
+const PIXEL: (u32, u32) = (123, 78);
 const SETTINGS: Settings = Settings { max_depth: 4, min_weight: 0.01, at_limit: AtLimit::Black };
 
 pub fn make(_: Effort) -> Finished {
@@ -37,9 +37,14 @@ pub fn make(_: Effort) -> Finished {
     let shadows: usize = tree.nodes.iter().map(|node| node.shadows.len()).sum();
     let holds =
         tree.traced() as u64 == traced && shadows as u64 == counts.shadow && difference <= 1e-14;
+    let difference_text = if difference == 0.0 {
+        "to the last bit".to_owned()
+    } else {
+        format!("to {}", number(difference))
+    };
     let claim = format!(
         "The tree has a node for each of the {traced} rays that were traced, and summing it up by \
-         eq:recursion gives the pixel again (difference {difference:.0e})."
+         I_Local + k_s I_Refl + k_t I_Trans gives the pixel again, {difference_text}."
     );
 
     let mut data = Table::new([
@@ -209,6 +214,7 @@ fn from_above(scene: &Scene, tree: &RayTree) -> Drawing {
                 Text::new(name, TICK).color(MUTED),
             );
         }
+        pen.label([-2.7, 3.1], [0.0, 0.0], Text::new("seen from above", LABEL).bold());
         for (from, to, color, number) in &rays {
             let from = [from[0], from[1].max(-3.2)];
             pen.arrow(from, *to, Stroke::new(*color, 2.5));

@@ -69,7 +69,9 @@ pub fn make(effort: Effort) -> Finished {
                 .color(method_color("naive")),
         )
         .tile(Tile::new("Watertight", relief.seen_by(watertight)).color(category_color(2)))
-        .inset(inset);
+        .inset(inset)
+        .insets_right()
+        .columns(2);
     let plate = Plate::new("0.3", "No ray passes between two triangles", claim, holds && random_find_nothing)
         .panel(pictures)
         .panel(Row::new().panel(1.0, bars))
