@@ -56,7 +56,8 @@ fn watertight() {
 /// 1.2, eq:local and eq:ambient: every term has its sign, and shadows take no more than the lights gave.
 #[test]
 fn local_model() {
-    let means: Vec<f64> = rows(&made("1.2")).iter().map(|row| value(row, "mean_radiance")).collect();
+    let means: Vec<f64> =
+        rows(&made("1.2")).iter().map(|row| value(row, "mean_radiance")).collect();
     let [ambient, diffuse, specular, shadows, reflection, refraction] = means[..] else {
         panic!("six terms")
     };
@@ -106,9 +107,8 @@ fn ray_tree() {
 #[test]
 fn depth() {
     let rows = rows(&made("1.7"));
-    let curve = |name: &str| -> Vec<_> {
-        rows.iter().filter(|row| field(row, "method") == name).collect()
-    };
+    let curve =
+        |name: &str| -> Vec<_> { rows.iter().filter(|row| field(row, "method") == name).collect() };
     let (black, background) = (curve("black"), curve("background"));
     for pair in black.windows(2) {
         assert!(value(pair[1], "rays") > value(pair[0], "rays"));
