@@ -10,6 +10,7 @@ use lancer_core::image::{ImageSize, check_target, save};
 use lancer_core::intersector::{Intersector, LinearScan};
 use lancer_core::render::{Control, Rendering, render_pixels};
 use lancer_core::sampling::{Pattern, PixelSampling};
+use lancer_core::scene::load::WarningKind;
 use lancer_core::scene::{PointLight, Scene};
 use lancer_core::world::World;
 use lancer_whitted::{Appel, RayCounts, Settings, Whitted};
@@ -104,8 +105,11 @@ pub fn run(args: &Args) -> Result<()> {
 
     let start = Instant::now();
     let loaded = scene::open(&args.scene)?;
+    let lit_here = !args.light.is_empty();
     for warning in &loaded.warnings {
-        eprintln!("warning: {warning}");
+        if !(lit_here && warning.kind == WarningKind::NoLight) {
+            eprintln!("warning: {warning}");
+        }
     }
     let mut scene = loaded.scene;
     place(&mut scene, args)?;
