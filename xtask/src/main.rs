@@ -4,6 +4,7 @@
 mod compare;
 mod eq;
 mod figures;
+mod labels;
 mod names;
 mod progress;
 mod render;
@@ -29,6 +30,7 @@ enum Command {
     Render(render::Args),
     Compare(compare::Args),
     Eq(eq::Args),
+    /// Checks the rules of the house: labels, dependencies, documentation, links, sizes.
     Tidy,
 }
 
