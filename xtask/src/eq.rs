@@ -19,7 +19,7 @@ pub struct Args {
 
 pub fn run(args: &Args) -> Result<()> {
     let sources = sources(&files()?, &["rs", "md"])?;
-    print!("{}", report(&sources, args.label.as_deref())?);
+    say!("{}", report(&sources, args.label.as_deref())?.trim_end());
     Ok(())
 }
 

@@ -16,10 +16,10 @@ pub fn run() -> Result<()> {
     let files = files()?;
     let violations = check(&files)?;
     for violation in &violations {
-        println!("{violation}");
+        say!("{violation}");
     }
     match violations.len() {
-        0 => println!("{} files are tidy", files.len()),
+        0 => say!("{} files are tidy", files.len()),
         count => bail!("{count} rules of the house are broken; each line above names a cure"),
     }
     Ok(())

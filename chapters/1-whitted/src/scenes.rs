@@ -72,7 +72,7 @@ pub fn open(name: &str, level: Option<&str>) -> Result<Loaded> {
         };
         return generated.open(level);
     }
-    ensure!(level.is_none(), "{name}: only generated scenes have a level");
+    ensure!(level.is_none(), "{name}: only generated scenes have a level; leave it out");
     let text = match name {
         "whitted" => include_str!("../scenes/whitted.toml"),
         "room" => include_str!("../scenes/room.toml"),

@@ -33,8 +33,10 @@ pub fn check(sources: &[Source]) -> Vec<Violation> {
                     report(number, format!("the path /{home}/ of one machine"), "make it relative");
                 }
             }
-            if source.is_rust() {
-                check_code(source, &line, &mut report);
+        }
+        if source.is_rust() {
+            for (line, code) in source.lines().zip(code_lines(&source.text)) {
+                check_code(source, &line, &code, &mut report);
             }
         }
     }
@@ -42,19 +44,23 @@ pub fn check(sources: &[Source]) -> Vec<Violation> {
 }
 
 /// Words that must not stand in code; comments and strings may speak of them.
-fn check_code(source: &Source, line: &Line, report: &mut impl FnMut(usize, String, &'static str)) {
+fn check_code(
+    source: &Source,
+    line: &Line,
+    code: &str,
+    report: &mut impl FnMut(usize, String, &'static str),
+) {
     let in_accel = source.path.starts_with("crates/accel/");
-    let code = code_of(line.text);
     for name in ["todo", "dbg", "unimplemented"] {
-        if has_word(&code, name, "!") {
+        if has_word(code, name, "!") {
             report(line.number, format!("`{name}!` is left"), "finish the work or remove it");
         }
     }
-    if !in_accel && has_word(&code, "unsafe", "") {
+    if !in_accel && has_word(code, "unsafe", "") {
         let cure = "write it safely, or move it to crates/accel and argue for it";
         report(line.number, "`unsafe` outside crates/accel".to_owned(), cure);
     }
-    if !in_accel && !line.in_test && has_word(&code, "mul_add", "") {
+    if !in_accel && !line.in_test && has_word(code, "mul_add", "") {
         let cure = "write a * b + c: without the CPU feature it is a library call";
         report(line.number, "`mul_add` outside crates/accel".to_owned(), cure);
     }
@@ -86,22 +92,53 @@ fn has_word(text: &str, word: &str, after: &str) -> bool {
     })
 }
 
-/// The line without its comment and without what is between quotes.
-fn code_of(line: &str) -> String {
-    let line = line.replace("'\"'", "");
+/// The lines of a Rust file without comments and without what is between quotes.
+fn code_lines(text: &str) -> Vec<String> {
     let mut code = String::new();
-    let mut in_string = false;
-    let mut chars = line.chars().peekable();
-    while let Some(c) = chars.next() {
-        match c {
-            '\\' if in_string => drop(chars.next()),
-            '"' => in_string = !in_string,
-            '/' if !in_string && chars.peek() == Some(&'/') => break,
-            _ if !in_string => code.push(c),
-            _ => {}
+    let mut rest = text;
+    while let Some(first) = rest.chars().next() {
+        let (skipped, after) = rest.split_at(comment_or_literal(rest).unwrap_or(0));
+        if skipped.is_empty() {
+            code.push(first);
+            rest = &rest[first.len_utf8()..];
+        } else {
+            code.extend(skipped.chars().filter(|c| *c == '\n'));
+            rest = after;
         }
     }
-    code
+    code.lines().map(str::to_owned).collect()
+}
+
+/// The length of the comment, text or character that `rest` starts with.
+fn comment_or_literal(rest: &str) -> Option<usize> {
+    let until = |start: usize, end: &str| {
+        rest.get(start..)?.find(end).map(|length| start + length + end.len())
+    };
+    let end = if rest.starts_with("//") {
+        rest.find('\n')
+    } else if rest.starts_with("/*") {
+        until(2, "*/")
+    } else if let Some(raw) = rest.strip_prefix('r') {
+        let hashes = raw.len() - raw.trim_start_matches('#').len();
+        raw[hashes..].strip_prefix('"')?;
+        until(2 + hashes, &format!("\"{}", "#".repeat(hashes)))
+    } else if let Some(text) = rest.strip_prefix('"') {
+        let mut escaped = false;
+        let is_end = |c: char| {
+            let ends = c == '"' && !escaped;
+            escaped = c == '\\' && !escaped;
+            ends
+        };
+        text.find(is_end).map(|length| length + 2)
+    } else if rest.starts_with("'\\") {
+        until(3, "'")
+    } else {
+        // 'x' is a character, 'x alone a lifetime.
+        let after = rest.strip_prefix('\'')?;
+        let length = 1 + after.chars().next()?.len_utf8();
+        return rest[length..].starts_with('\'').then_some(length + 1);
+    };
+    Some(end.unwrap_or(rest.len()))
 }
 
 #[cfg(test)]
@@ -171,6 +208,11 @@ mod tests {
             ("let s = \"unsafe // \\\" todo!()\";", 0),
             ("let s = \"//\"; unsafe { f() }", 1),
             ("let c = '\"'; unsafe { f() }", 1),
+            ("let c = '\\''; unsafe { f() } // '", 1),
+            ("fn f<'a>(x: &'a str) { unsafe { f() } }", 1),
+            ("let s = r#\"unsafe \" //\"#; unsafe { f() }", 1),
+            ("let r = r\"\\\"; unsafe { f() }", 1),
+            ("let s = \"a\nunsafe\n\"; /* unsafe\nunsafe */ x", 0),
             ("#![allow(unsafe_code)]", 0),
             ("a.mul_add(b, c)", 1),
             ("f64::mul_add(a, b, c)", 1),
