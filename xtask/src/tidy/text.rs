@@ -30,7 +30,11 @@ pub fn check(sources: &[Source]) -> Vec<Violation> {
             }
             for home in ["root", "home", "work", "tmp", "Users"] {
                 if is_absolute(line.text, home) {
-                    report(number, format!("the path /{home}/ of one machine"), "make it relative");
+                    report(
+                        number,
+                        format!("a path below /{home}, of one machine only"),
+                        "make it relative",
+                    );
                 }
             }
         }
@@ -195,7 +199,7 @@ mod tests {
             }
         }
         let text = format!("see {}", ["", "home", "me"].join("/"));
-        assert_snapshot!(of("a.toml", &text), @"a.toml:1: the path /home/ of one machine; make it relative");
+        assert_snapshot!(of("a.toml", &text), @"a.toml:1: a path below /home, of one machine only; make it relative");
     }
 
     #[test]
