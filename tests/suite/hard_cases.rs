@@ -19,6 +19,7 @@ fn t(corners: [DVec3; 3], origin: DVec3, direction: DVec3) -> Option<f64> {
     hit(corners, origin, direction).map(|hit| hit.t)
 }
 
+/// eq:ray-triangle by hand.
 #[test]
 fn plain_hits_have_the_worked_out_parameter_and_weights() {
     let got = hit(UNIT, v(0.25, 0.5, 1.0), v(0.0, 0.0, -2.0)).unwrap();

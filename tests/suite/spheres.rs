@@ -17,8 +17,8 @@ fn textbook(center: DVec3, radius: f64, origin: DVec3, direction: DVec3) -> Opti
     (discriminant >= 0.0).then(|| (-b - discriminant.sqrt()) / a)
 }
 
-/// A ray parallel to the axis at height h over the centre of a unit sphere meets it where
-/// t = D − √(1 − h²); the height is chosen so that the root is rational: h = 3/5, √ = 4/5.
+/// eq:ray-sphere: a ray parallel to the axis at height h over the centre of a unit sphere meets it
+/// where t = D − √(1 − h²); the height is chosen so that the root is rational: h = 3/5, √ = 4/5.
 #[test]
 fn far_spheres_are_met_to_sixteen_digits() {
     for distance in [10.0, 1e3, 1e5, 1e8, 1e12] {

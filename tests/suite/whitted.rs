@@ -113,8 +113,8 @@ fn direct_light_in_a_sphere() {
     }
 }
 
-/// eq:recursion between two parallel mirrors that emit 1: the sum of k_s^m, and what is left of it
-/// beyond Max_Prof follows the choice of the colour there.
+/// eq:recursion and algo:lr between two parallel mirrors that emit 1: the sum of k_s^m, and what is
+/// left of it beyond Max_Prof follows the choice of the colour there.
 #[test]
 fn parallel_mirrors_sum_a_geometric_series() {
     let mut scene = scene_of(Mesh::default());

@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-use anyhow::Result;
+use anyhow::{Result, anyhow};
 use lancer_core::image::load;
 use lancer_core::metric::{compare, psnr_srgb8};
 
@@ -19,12 +19,13 @@ pub struct Args {
 
 pub fn run(args: &Args) -> Result<()> {
     let (reference, image) = (load(&args.reference)?, load(&args.image)?);
-    let errors = compare(&reference, &image)?;
-    println!("RMSE       {:.6e}", errors.rmse);
-    println!("relMSE     {:.6e}", errors.rel_mse);
-    println!("maximum    {:.6e}", errors.max);
-    println!("99th perc. {:.6e}", errors.p99);
-    println!("PSNR       {:.2} dB (8-bit sRGB)", psnr_srgb8(&reference, &image)?);
-    println!("FLIP       {:.6}", errors.flip);
+    let errors = compare(&reference, &image)
+        .map_err(|error| anyhow!("{}: {error}; make both of one size", args.image.display()))?;
+    say!("RMSE       {:.6e}", errors.rmse);
+    say!("relMSE     {:.6e}", errors.rel_mse);
+    say!("maximum    {:.6e}", errors.max);
+    say!("99th perc. {:.6e}", errors.p99);
+    say!("PSNR       {:.2} dB (8-bit sRGB)", psnr_srgb8(&reference, &image)?);
+    say!("FLIP       {:.6}", errors.flip);
     Ok(())
 }

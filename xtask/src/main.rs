@@ -1,9 +1,18 @@
 //! `cargo xtask`: the course's command line. It parses, calls and reports; the algorithms are in
 //! `crates/`, the figures in `chapters/`.
 
+/// Prints a line. Unlike `println!` it does not panic when nobody reads on, as in `… | head`.
+macro_rules! say {
+    ($($text:tt)*) => {{
+        use std::io::Write;
+        let _ = writeln!(std::io::stdout(), $($text)*);
+    }};
+}
+
 mod compare;
 mod eq;
 mod figures;
+mod labels;
 mod names;
 mod progress;
 mod render;
@@ -17,7 +26,7 @@ use clap::{Parser, Subcommand};
 
 /// The ray-tracing course one can run.
 #[derive(Parser)]
-#[command(name = "cargo xtask", version)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask", version)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -29,6 +38,7 @@ enum Command {
     Render(render::Args),
     Compare(compare::Args),
     Eq(eq::Args),
+    /// Checks the rules of the house: labels, dependencies, documentation, links, sizes.
     Tidy,
 }
 

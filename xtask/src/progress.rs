@@ -6,21 +6,21 @@ use std::time::Duration;
 use anyhow::{Context, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 
-static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+/// Set by Ctrl-C.
+pub static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// Lets Ctrl-C set a flag that renderings look at. Files are written whole or not at all, so the second
+/// Lets Ctrl-C set [`INTERRUPTED`], which renderings look at. Files are written whole or not at all, so the second
 /// Ctrl-C may end the process at once.
 ///
 /// # Errors
 /// If the system accepts no handler.
-pub fn watch_for_interrupt() -> Result<&'static AtomicBool> {
+pub fn watch_for_interrupt() -> Result<()> {
     ctrlc::set_handler(|| {
         if INTERRUPTED.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
         }
     })
-    .context("cannot watch for Ctrl-C")?;
-    Ok(&INTERRUPTED)
+    .context("cannot watch for Ctrl-C")
 }
 
 /// A bar with an estimate of the time left; on a terminal only, and only for work that takes a while.

@@ -1,8 +1,9 @@
+use std::fmt::Display;
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Instant;
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use glam::{DVec2, DVec3};
 use lancer_accel::ObvhsBvh2;
 use lancer_core::Rgb;
@@ -41,19 +42,19 @@ pub struct Args {
     #[arg(long, default_value = "obvhs-bvh2")]
     index: String,
     /// Pixels across and down
-    #[arg(long, default_value = "512x512", value_name = "WxH")]
+    #[arg(long, default_value = "512x512", value_name = "WxH", allow_hyphen_values = true)]
     size: ImageSize,
     /// Samples per pixel: 1 is the pixel's centre, more are a scrambled Sobol sequence
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
+    #[arg(long, default_value_t = 1, value_parser = whole::<u32>(1, 1 << 20), allow_negative_numbers = true)]
     spp: u32,
     /// Largest number of bounces between the eye and a surface (whitted)
-    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    #[arg(long, default_value_t = 5, value_parser = whole::<u32>(0, 1000), allow_negative_numbers = true)]
     depth: u32,
     /// Picks the sample positions
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, value_parser = whole::<u64>(0, u64::MAX), allow_negative_numbers = true)]
     seed: u64,
     /// Threads; 0 takes all processors. The picture does not depend on it
-    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
+    #[arg(long, default_value_t = 0, value_parser = whole::<u16>(0, 1024), allow_negative_numbers = true)]
     threads: u16,
     /// Moves the eye
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
@@ -62,13 +63,13 @@ pub struct Args {
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     look_at: Option<Numbers<3>>,
     /// Vertical opening angle in degrees
-    #[arg(long, value_name = "DEG")]
+    #[arg(long, value_name = "DEG", value_parser = finite, allow_hyphen_values = true)]
     fov: Option<f64>,
     /// A point light instead of the scene's own; may be given several times
     #[arg(long, value_name = "X,Y,Z,INTENSITY", allow_hyphen_values = true)]
     light: Vec<Numbers<4>>,
     /// Brightens a PNG by this many stops; an EXR keeps the radiances
-    #[arg(long, default_value_t = 0.0, value_name = "EV", allow_hyphen_values = true)]
+    #[arg(long, default_value_t = 0.0, value_name = "EV", value_parser = finite, allow_hyphen_values = true)]
     exposure: f64,
     /// The picture: .png is sRGB, .exr is linear
     #[arg(long, value_name = "FILE")]
@@ -83,13 +84,7 @@ impl<const N: usize> FromStr for Numbers<N> {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let numbers: Vec<f64> = text
-            .split(',')
-            .map(|part| part.trim().parse().map_err(|_| format!("`{part}` is not a number")))
-            .collect::<Result<_, _>>()?;
-        if let Some(bad) = numbers.iter().find(|number| !number.is_finite()) {
-            return Err(format!("{bad} is not a finite number"));
-        }
+        let numbers: Vec<f64> = text.split(',').map(finite).collect::<Result<_, _>>()?;
         let count = numbers.len();
         <[f64; N]>::try_from(numbers)
             .map(Self)
@@ -97,11 +92,27 @@ impl<const N: usize> FromStr for Numbers<N> {
     }
 }
 
+fn finite(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse().ok().filter(|number: &f64| number.is_finite());
+    number.ok_or_else(|| format!("`{text}` is not a number; write one such as -1.5"))
+}
+
+/// Reads whole numbers in a range.
+fn whole<T: FromStr + PartialOrd + Copy + Display>(
+    least: T,
+    most: T,
+) -> impl Fn(&str) -> Result<T, String> + Clone {
+    move |text| {
+        let number = text.parse().ok().filter(|number| (least..=most).contains(number));
+        number.ok_or_else(|| format!("write a whole number from {least} to {most}"))
+    }
+}
+
 pub fn run(args: &Args) -> Result<()> {
     let method = METHODS[choose("method", &args.method, &METHODS)?];
     let index = INDEXES[choose("index", &args.index, &INDEXES)?];
-    ensure!(args.exposure.is_finite(), "--exposure {} is not a finite number", args.exposure);
-    check_target(&args.out)?;
+    check_target(&args.out).context("--out")?;
+    progress::watch_for_interrupt()?;
 
     let start = Instant::now();
     let loaded = scene::open(&args.scene)?;
@@ -114,7 +125,7 @@ pub fn run(args: &Args) -> Result<()> {
     let mut scene = loaded.scene;
     place(&mut scene, args)?;
     let counts = scene.counts();
-    println!(
+    say!(
         "scene   {:7.3} s   {} triangles in {} faces, {} spheres, {} lights",
         start.elapsed().as_secs_f64(),
         counts.triangles,
@@ -133,14 +144,14 @@ pub fn run(args: &Args) -> Result<()> {
             let start = Instant::now();
             let tree = ObvhsBvh2::build(&scene);
             let mib = tree.memory() as f64 / f64::from(1 << 20);
-            println!("index   {:7.3} s   {index}, {mib:.1} MiB", start.elapsed().as_secs_f64());
+            say!("index   {:7.3} s   {index}, {mib:.1} MiB", start.elapsed().as_secs_f64());
             trace(method, &scene, &tree, args)
         }
     })?;
 
     let defects = rendering.image.defects();
     save(&args.out, &rendering.image, args.exposure)?;
-    println!("picture {}", args.out.display());
+    say!("picture {}", args.out.display());
     if defects.not_finite + defects.negative > 0 {
         bail!(
             "{} pixels are not finite and {} are negative: please report the scene",
@@ -175,7 +186,7 @@ fn place(scene: &mut Scene, args: &Args) -> Result<()> {
             .collect();
         ensure!(
             scene.lights.iter().all(|light| light.intensity.x >= 0.0),
-            "--light: an intensity is at least 0"
+            "--light: an intensity is negative; the fourth number must be at least 0"
         );
     }
     Ok(())
@@ -211,17 +222,17 @@ fn picture(
     let bar = progress::bar(args.size.pixels() as u64, "tracing");
     let control = Control {
         progress: &|pixels| bar.set_position(pixels),
-        cancelled: progress::watch_for_interrupt()?,
+        cancelled: &progress::INTERRUPTED,
         ..Control::default()
     };
     let start = Instant::now();
     let rendering = render_pixels(args.size, sampling, control, radiance)
-        .context("interrupted; no file was written");
+        .map_err(|_| anyhow!("interrupted; no file was written"));
     let seconds = start.elapsed().as_secs_f64();
     bar.finish_and_clear();
     let rendering = rendering?;
     let counts = rendering.counts;
-    println!(
+    say!(
         "trace   {seconds:7.3} s   {} rays: {} primary, {} mirror, {} refracted, {} shadow; {:.2} M/s",
         counts.total(),
         counts.primary,

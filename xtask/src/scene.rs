@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use anyhow::Result;
+use anyhow::{Result, anyhow};
 use lancer_core::scene::load::{Loaded, load};
 
 use crate::names::choose;
@@ -22,6 +22,7 @@ pub fn open(scene: &str) -> Result<Loaded> {
         None => (scene, None),
     };
     let known: Vec<&str> = chapter_1::scenes::NAMES.to_vec();
-    let name = known[choose("scene", name, &known)?];
+    let chosen = choose("scene", name, &known);
+    let name = known[chosen.map_err(|error| anyhow!("{error}; or name a .toml or .obj file"))?];
     chapter_1::scenes::open(name, level)
 }

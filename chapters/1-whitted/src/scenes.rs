@@ -85,7 +85,7 @@ pub fn open(name: &str, level: Option<&str>) -> Result<Loaded> {
         };
         return generated.open(level);
     }
-    ensure!(level.is_none(), "{name}: only generated scenes have a level");
+    ensure!(level.is_none(), "{name}: only generated scenes have a level; leave it out");
     let Some((_, text)) = WRITTEN.iter().find(|(known, _)| *known == name) else {
         bail!("unknown scene `{name}`; known: {}", NAMES.join(", "));
     };

@@ -115,7 +115,7 @@ fn montage() -> Plate {
 
 fn described(plate: Plate) -> Plate {
     plate
-        .note("Method", "eq:shadow-beam, eq:cook-light; the area light is a square of side 1, the receiver a plane. \
+        .note("Method", "eq:local, eq:attenuation; the area light is a square of side 1, the receiver a plane. \
             Every picture is exposed alike; difference pictures share the printed scale.")
         .note("Settings", "240×160, 1 sample a pixel for visibility, n = 1, 4, 16, 64, 256 light samples, seed 1999")
         .note("Reference", "closed form of the polygon’s irradiance; residual error 3×10⁻¹²")

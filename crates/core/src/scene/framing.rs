@@ -51,7 +51,9 @@ impl CameraError {
         match self {
             Self::NotFinite => ("the camera is not finite", "correct its coordinates"),
             Self::NoDirection => ("look_at is the same point as eye", "move one of the two"),
-            Self::UpAlongView => ("up is zero or along the line of sight", "choose another `up`"),
+            Self::UpAlongView => {
+                ("up is zero or along the line of sight", "look another way or choose another `up`")
+            }
             Self::Fov => ("fov is out of range", "it must be between 0 and 180 degrees"),
         }
     }

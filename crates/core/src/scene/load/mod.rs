@@ -56,6 +56,9 @@ pub struct Loaded {
 /// # Errors
 /// When a file cannot be read, its kind is unknown, its content is wrong, or nothing is to be drawn.
 pub fn load(path: &Path) -> Result<Loaded, LoadError> {
+    if path.is_dir() {
+        return Err(LoadError::IsFolder { file: path.display().to_string() });
+    }
     load_with(path, &open)
 }
 

@@ -13,6 +13,12 @@ pub enum LoadError {
         /// The system's answer.
         reason: io::Error,
     },
+    /// A folder has that name.
+    #[error("{file}: it is a folder; name a .obj or .toml file in it")]
+    IsFolder {
+        /// The file as it was asked for.
+        file: String,
+    },
     /// The extension names no kind of scene.
     #[error("{file}: unknown kind of scene; the known ones are .obj and .toml")]
     UnknownKind {

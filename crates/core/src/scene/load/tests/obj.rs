@@ -187,7 +187,7 @@ fn nothing_to_draw_is_refused() {
 fn files_that_cannot_be_read_are_named() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     std::fs::create_dir(folder.path().join("folder.obj")).expect("a folder");
-    for name in ["missing.obj", "missing.toml", "folder.obj"] {
+    for name in ["missing.obj", "missing.toml"] {
         let path = folder.path().join(name);
         let error = load(&path).expect_err("refused");
         assert!(matches!(error, LoadError::Unreadable { .. }), "{error}");
@@ -195,6 +195,9 @@ fn files_that_cannot_be_read_are_named() {
         assert!(message.starts_with(&format!("{}: ", path.display())), "{message}");
         assert!(message.ends_with("; check the path and its permissions"), "{message}");
     }
+    let path = folder.path().join("folder.obj");
+    let expected = format!("{}: it is a folder; name a .obj or .toml file in it", path.display());
+    assert_refused(load(&path), &expected);
     for name in ["a.stl", "a", ""] {
         assert_refused(
             load(Path::new(name)),

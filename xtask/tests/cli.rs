@@ -1,0 +1,463 @@
+//! The command line as a hostile user meets it: every refusal is one `error:` line that names the
+//! file or flag and the cure, ends with a failure, and leaves all files as they were.
+
+use std::fs;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use insta::assert_snapshot;
+use lancer_core::image::{ImageSize, load};
+use tempfile::{TempDir, tempdir};
+
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+const CORNER: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+fn command(folder: &TempDir, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_xtask"));
+    command.current_dir(folder).args(arguments);
+    command
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+/// A folder with these files, and a picture to lose.
+fn folder(files: &[(&str, &[u8])]) -> TempDir {
+    let folder = tempdir().unwrap();
+    fs::write(folder.path().join("old.png"), "old").unwrap();
+    for (name, bytes) in files {
+        fs::write(folder.path().join(name), bytes).unwrap();
+    }
+    folder
+}
+
+/// All names in a folder, with their lengths.
+fn contents(folder: &Path) -> Vec<(String, u64)> {
+    let entries = folder.read_dir().unwrap().map(|entry| entry.unwrap());
+    let name_and_length = |entry: fs::DirEntry| {
+        (entry.file_name().into_string().unwrap(), entry.metadata().unwrap().len())
+    };
+    let mut found: Vec<_> = entries.map(name_and_length).collect();
+    found.sort();
+    found
+}
+
+/// Runs what must succeed.
+fn accepted(folder: &TempDir, arguments: &[&str]) -> Output {
+    let output = command(folder, arguments).output().unwrap();
+    assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
+    output
+}
+
+/// Runs what must be refused and returns the error.
+fn refusal(folder: &TempDir, arguments: &[&str]) -> String {
+    let before = contents(folder.path());
+    let output = command(folder, arguments).output().unwrap();
+    let (out, err) = (text(&output.stdout), text(&output.stderr));
+    assert!(matches!(output.status.code(), Some(1 | 2)), "{arguments:?}: {}\n{err}", output.status);
+    assert!(!err.contains("panicked"), "{arguments:?}: {err}");
+    assert!(!out.contains("picture"), "{arguments:?} looks like a success: {out}");
+    assert_eq!(contents(folder.path()), before, "{arguments:?} left files");
+    assert_eq!(fs::read(folder.path().join("old.png")).unwrap(), b"old", "{arguments:?}");
+    // clap wraps nothing but puts lists of what is missing on lines of their own.
+    let mut errors = err.split("\n\n").filter(|part| part.starts_with("error: "));
+    let error = errors.next().unwrap_or_else(|| panic!("{arguments:?}: {err}"));
+    assert_eq!(err.matches("error:").count(), 1, "{arguments:?}: {err}");
+    error.trim_end().to_owned()
+}
+
+/// The refusals of many command lines, a line for each.
+fn refusals<'a>(folder: &TempDir, lines: impl IntoIterator<Item = Vec<&'a str>>) -> String {
+    lines.into_iter().map(|arguments| refusal(folder, &arguments) + "\n").collect()
+}
+
+#[test]
+fn wrong_options_are_refused_with_a_cure() {
+    let refused = |options: &[[&'static str; 2]]| {
+        let line = |&[option, value]: &[&'static str; 2]| {
+            let mut line = vec!["render", "whitted", "--out=old.png", option, value];
+            line.extend((option != "--size").then_some("--size=8x8"));
+            line
+        };
+        refusals(&folder(&[]), options.iter().map(line))
+    };
+    let sizes = ["0x0", "99999999x99999999", "abc", "-8x8"].map(|size| ["--size", size]);
+    assert_snapshot!(refused(&sizes), @r"
+    error: invalid value '0x0' for '--size <WxH>': a picture of 0x0 has no pixel: both numbers must be at least 1
+    error: invalid value '99999999x99999999' for '--size <WxH>': a picture of 99999999x99999999 is too large: at most 268435456 pixels (16384x16384)
+    error: invalid value 'abc' for '--size <WxH>': `abc` is no picture size: write WIDTHxHEIGHT in pixels, such as 512x384
+    error: invalid value '-8x8' for '--size <WxH>': `-8x8` is no picture size: write WIDTHxHEIGHT in pixels, such as 512x384
+    ");
+    assert_snapshot!(refused(&[
+        ["--spp", "0"],
+        ["--spp", "-1"],
+        ["--spp", "1e3"],
+        ["--depth", "-1"],
+        ["--threads", "-1"],
+        ["--threads", "70000"],
+        ["--seed", "-1"],
+        ["--seed", "x"],
+    ]), @r"
+    error: invalid value '0' for '--spp <SPP>': write a whole number from 1 to 1048576
+    error: invalid value '-1' for '--spp <SPP>': write a whole number from 1 to 1048576
+    error: invalid value '1e3' for '--spp <SPP>': write a whole number from 1 to 1048576
+    error: invalid value '-1' for '--depth <DEPTH>': write a whole number from 0 to 1000
+    error: invalid value '-1' for '--threads <THREADS>': write a whole number from 0 to 1024
+    error: invalid value '70000' for '--threads <THREADS>': write a whole number from 0 to 1024
+    error: invalid value '-1' for '--seed <SEED>': write a whole number from 0 to 18446744073709551615
+    error: invalid value 'x' for '--seed <SEED>': write a whole number from 0 to 18446744073709551615
+    ");
+    assert_snapshot!(refused(&[
+        ["--eye", "nan,0,0"],
+        ["--eye", "1,2"],
+        ["--eye", "1;2;3"],
+        ["--eye", "1e999,0,0"],
+        ["--eye", "0,1.1,0"],
+        ["--look-at", "0,2.2,7"],
+        ["--look-at", "0,9,7"],
+        ["--fov", "0"],
+        ["--fov", "180"],
+        ["--fov", "-40"],
+        ["--fov", "nan"],
+    ]), @r"
+    error: invalid value 'nan,0,0' for '--eye <X,Y,Z>': `nan` is not a number; write one such as -1.5
+    error: invalid value '1,2' for '--eye <X,Y,Z>': 3 numbers separated by commas are wanted, 2 are given
+    error: invalid value '1;2;3' for '--eye <X,Y,Z>': `1;2;3` is not a number; write one such as -1.5
+    error: invalid value '1e999,0,0' for '--eye <X,Y,Z>': `1e999` is not a number; write one such as -1.5
+    error: --eye, --look-at, --fov: look_at is the same point as eye; move one of the two
+    error: --eye, --look-at, --fov: look_at is the same point as eye; move one of the two
+    error: --eye, --look-at, --fov: up is zero or along the line of sight; look another way or choose another `up`
+    error: --eye, --look-at, --fov: fov is out of range; it must be between 0 and 180 degrees
+    error: --eye, --look-at, --fov: fov is out of range; it must be between 0 and 180 degrees
+    error: --eye, --look-at, --fov: fov is out of range; it must be between 0 and 180 degrees
+    error: invalid value 'nan' for '--fov <DEG>': `nan` is not a number; write one such as -1.5
+    ");
+    assert_snapshot!(refused(&[
+        ["--light", "1,2,3"],
+        ["--light", "1,2,3,-4"],
+        ["--light", "1,2,3,nan"],
+        ["--light", "1,,3,4"],
+        ["--exposure", "inf"],
+        ["--exposure", "bright"],
+        ["--method", "witted"],
+        ["--index", "linaer"],
+    ]), @r"
+    error: invalid value '1,2,3' for '--light <X,Y,Z,INTENSITY>': 4 numbers separated by commas are wanted, 3 are given
+    error: --light: an intensity is negative; the fourth number must be at least 0
+    error: invalid value '1,2,3,nan' for '--light <X,Y,Z,INTENSITY>': `nan` is not a number; write one such as -1.5
+    error: invalid value '1,,3,4' for '--light <X,Y,Z,INTENSITY>': `` is not a number; write one such as -1.5
+    error: invalid value 'inf' for '--exposure <EV>': `inf` is not a number; write one such as -1.5
+    error: invalid value 'bright' for '--exposure <EV>': `bright` is not a number; write one such as -1.5
+    error: unknown method `witted`; known: whitted, appel
+    error: unknown index `linaer`; known: linear, obvhs-bvh2
+    ");
+}
+
+#[test]
+fn wrong_scenes_are_refused_with_a_cure() {
+    let noise: Vec<u8> =
+        (0..4000_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
+    let triangle_and = |rest: &str| format!("{TRIANGLE}{rest}").into_bytes();
+    let folder = folder(&[
+        ("empty.obj", b""),
+        ("empty.toml", b""),
+        ("noise.obj", &noise),
+        ("noise.toml", &noise),
+        ("truncated.obj", &triangle_and("f 1 2 ")),
+        ("beyond.obj", &triangle_and("f 1 2 4\n")),
+        ("half.obj", &triangle_and("f 1/ 2/")),
+        ("nan.obj", b"v 0 0 0\nv 1 nan 0\nv 0 1 0\nf 1 2 3\n"),
+        ("point.obj", b"v 1 1 1\nf 1 1 1\n"),
+        ("outside.obj", &triangle_and("mtllib ../secret.mtl\nf 1 2 3\n")),
+        ("typing.toml", b"ambiant = 1\n"),
+        ("syntax.toml", b"ambient = \n"),
+        ("model.ply", b"ply\n"),
+    ]);
+    fs::create_dir(folder.path().join("folder")).unwrap();
+    fs::create_dir(folder.path().join("folder.obj")).unwrap();
+    let refused = |scenes: &[&str]| {
+        let lines = scenes.iter().map(|scene| vec!["render", scene, "--size=8x8", "--out=old.png"]);
+        refusals(&folder, lines)
+    };
+    assert_snapshot!(refused(&["witted", "flake:99", "flake:x", "room:2"]), @r"
+    error: unknown scene `witted`; known: whitted, flake, room, gears, tetrahedra; or name a .toml or .obj file
+    error: flake:99: the level is a number from 0 to 7
+    error: flake:x: the level is a number from 0 to 7
+    error: room: only generated scenes have a level; leave it out
+    ");
+    assert_snapshot!(refused(&["folder", "folder.obj", ".", "model.ply"]), @r"
+    error: folder: it is a folder; name a .obj or .toml file in it
+    error: folder.obj: it is a folder; name a .obj or .toml file in it
+    error: .: it is a folder; name a .obj or .toml file in it
+    error: model.ply: unknown kind of scene; the known ones are .obj and .toml
+    ");
+    let missing = refused(&["missing.obj", "missing/scene.toml"]);
+    assert!(
+        missing.starts_with("error: missing.obj: ")
+            && missing.contains("\nerror: missing/scene.toml: ")
+    );
+    assert_eq!(missing.matches("; check the path and its permissions\n").count(), 2);
+    assert_snapshot!(refused(&[
+        "empty.obj",
+        "noise.obj",
+        "truncated.obj",
+        "beyond.obj",
+        "half.obj",
+        "nan.obj",
+        "point.obj",
+        "outside.obj",
+    ]), @r"
+    error: empty.obj: nothing to draw: no face with 3 corners; check that this is an OBJ file with `v` and `f` lines
+    error: noise.obj: nothing to draw: no face with 3 corners; check that this is an OBJ file with `v` and `f` lines
+    error: truncated.obj: nothing to draw: no face with 3 corners; check that this is an OBJ file with `v` and `f` lines
+    error: beyond.obj:4: the face names number 4 of 3 vertices; count from 1, or back from -1 for the latest
+    error: half.obj: nothing to draw: no face with 3 corners; check that this is an OBJ file with `v` and `f` lines
+    error: nan.obj:2: a coordinate is not finite, or beyond ±1e50; correct the number
+    error: point.obj: nothing to draw: all vertices are at one point; check the vertices
+    error: outside.obj:4: mtllib `../secret.mtl` is outside the model's folder; put the library beside the model and name it without a path
+    ");
+    assert_snapshot!(refused(&["empty.toml", "noise.toml", "typing.toml", "syntax.toml"]), @r"
+    error: empty.toml: nothing to draw; add a [[sphere]], [[mesh]] or [[polygon]]
+    error: noise.toml: the text is not UTF-8; save the file as UTF-8
+    error: typing.toml:1: unknown field `ambiant`; the known ones are ambient, camera, light, material, mesh, sphere, polygon, background
+    error: syntax.toml:1: string values must be quoted, expected literal string; correct the value or the syntax
+    ");
+}
+
+#[test]
+fn odd_scenes_are_drawn_with_a_warning() {
+    let dark = "[material.grey]\nrho_d = 0.5\n\n[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'grey'\n";
+    let folder = folder(&[
+        ("truncated.obj", format!("{CORNER}f 1 2 ").as_bytes()),
+        ("no_library.obj", format!("mtllib missing.mtl\nusemtl red\n{CORNER}").as_bytes()),
+        ("mark.obj", format!("\u{feff}mtllib red.mtl\nusemtl red\n{CORNER}").as_bytes()),
+        ("red.mtl", b"newmtl red\nKd 0.8 0.1 0.1\n"),
+        ("dark.toml", dark.as_bytes()),
+    ]);
+    let mut warnings = String::new();
+    for scene in ["truncated.obj", "no_library.obj", "mark.obj", "dark.toml"] {
+        let output = accepted(&folder, &["render", scene, "--size=9x9", "--out=new.png"]);
+        warnings += &text(&output.stderr);
+        let centre = load(folder.path().join("new.png")).unwrap().get(4, 4);
+        assert_eq!(centre.max_element() > 0.0, scene != "dark.toml", "{scene}: {centre}");
+        // `Kd` alone is a material, and the mark hides no statement.
+        assert_eq!(centre.x > 2.0 * centre.y, scene == "mark.obj", "{scene}: {centre}");
+    }
+    assert_snapshot!(warnings, @r"
+    warning: truncated.obj:9: face with fewer than 3 corners left out
+    warning: no_library.obj:1: material library cannot be opened; its materials become light grey
+    warning: no_library.obj:2: material not defined in any library; its faces become light grey
+    warning: dark.toml: no light: the picture will be black; add a [[light]], a material with emission or an ambient
+    ");
+}
+
+#[test]
+fn wrong_targets_are_refused_before_the_work() {
+    let folder = folder(&[]);
+    fs::create_dir(folder.path().join("folder.png")).unwrap();
+    let targets = ["missing/new.png", "old.png/new.png", "folder.png", "new.jpg", "new", ".png"];
+    // The work would take hours.
+    let line =
+        |target| vec!["render", "whitted", "--size=4096x4096", "--spp=100000", "--out", target];
+    assert_snapshot!(refusals(&folder, targets.map(line)), @r"
+    error: --out: cannot write `missing/new.png`: there is no folder `missing`; create it first
+    error: --out: cannot write `old.png/new.png`: there is no folder `old.png`; create it first
+    error: --out: cannot write `folder.png`: it is a folder; name a file in it
+    error: --out: what kind of picture is `new.jpg`? Its name must end in .png (sRGB) or .exr (linear)
+    error: --out: what kind of picture is `new`? Its name must end in .png (sRGB) or .exr (linear)
+    error: --out: what kind of picture is `.png`? Its name must end in .png (sRGB) or .exr (linear)
+    ");
+}
+
+#[cfg(unix)]
+#[test]
+fn protected_targets_are_refused() {
+    use std::os::unix::fs::PermissionsExt;
+
+    let folder = folder(&[("protected.png", b"mine")]);
+    fs::create_dir(folder.path().join("closed")).unwrap();
+    for (name, mode) in [("protected.png", 0o444), ("closed", 0o555)] {
+        let path = folder.path().join(name);
+        fs::set_permissions(&path, PermissionsExt::from_mode(mode)).unwrap();
+    }
+    let line = |target| vec!["render", "whitted", "--size=8x8", "--out", target];
+    assert_snapshot!(refusals(&folder, ["protected.png"].map(line)), @"error: --out: cannot write `protected.png`: that file is write-protected; choose another name or make it writable");
+    assert_eq!(fs::read(folder.path().join("protected.png")).unwrap(), b"mine");
+
+    if fs::write(folder.path().join("closed/probe"), "").is_ok() {
+        eprintln!("not tested: this user may write into a read-only folder");
+        return;
+    }
+    let error = refusals(&folder, ["closed/new.png"].map(line));
+    assert!(error.contains("`closed/new.png`: its folder is read-only; choose another"), "{error}");
+}
+
+/// `LANCER_SMALL_DISK` names an empty folder on a disk of 64 KiB, such as one made by
+/// `mount -t tmpfs -o size=64k tmpfs FOLDER`.
+#[test]
+#[ignore = "needs a small disk in LANCER_SMALL_DISK"]
+fn a_full_disk_leaves_the_old_picture() {
+    let disk = std::env::var("LANCER_SMALL_DISK").expect("LANCER_SMALL_DISK names a folder");
+    let target = format!("{disk}/a.exr");
+    let folder = folder(&[]);
+    accepted(&folder, &["render", "whitted", "--size=8x8", "--out", &target]);
+    let before = fs::read(&target).unwrap();
+    let error = refusal(&folder, &["render", "whitted", "--size=256x256", "--out", &target]);
+    assert!(error.contains(&target) && error.contains("the disk is full; free some"), "{error}");
+    assert_eq!(fs::read(&target).unwrap(), before);
+    assert_eq!(contents(Path::new(&disk)).len(), 1);
+    fs::remove_file(target).unwrap();
+}
+
+#[test]
+fn pictures_that_cannot_be_compared_are_refused() {
+    let folder = folder(&[("noise.exr", b"no picture")]);
+    for (name, size) in [("a.png", "8x8"), ("b.exr", "8x4")] {
+        accepted(&folder, &["render", "whitted", "--size", size, "--out", name]);
+    }
+    let pairs = [
+        ["a.png", "b.exr"],
+        ["a.png", "missing.png"],
+        ["noise.exr", "a.png"],
+        ["old.png", "a.png"],
+        ["a.jpg", "a.png"],
+    ];
+    let line = |[reference, image]: [&'static str; 2]| vec!["compare", reference, image];
+    assert_snapshot!(refusals(&folder, pairs.map(line)), @r"
+    error: b.exr: cannot compare a picture of 8x4 with a reference of 8x8 pixels; make both of one size
+    error: there is no picture `missing.png`; check its name and the current folder
+    error: cannot decode `noise.exr`: it is damaged, of another format than its name tells, or too large (512 MiB); make it anew: Format error decoding OpenExr: invalid: file identifier missing: invalid: file identifier missing
+    error: cannot decode `old.png`: it is damaged, of another format than its name tells, or too large (512 MiB); make it anew: unexpected end of file
+    error: what kind of picture is `a.jpg`? Its name must end in .png (sRGB) or .exr (linear)
+    ");
+    let same = accepted(&folder, &["compare", "a.png", "a.png"]);
+    assert_snapshot!(text(&same.stdout), @r"
+    RMSE       0.000000e0
+    relMSE     0.000000e0
+    maximum    0.000000e0
+    99th perc. 0.000000e0
+    PSNR       inf dB (8-bit sRGB)
+    FLIP       0.000000
+    ");
+}
+
+#[test]
+fn incomplete_and_unknown_commands_are_refused() {
+    let lines = [
+        vec!["rendr"],
+        vec!["render", "whitted"],
+        vec!["render", "--out=a.png"],
+        vec!["compare", "a.png"],
+        vec!["tidy", "more"],
+    ];
+    assert_snapshot!(refusals(&folder(&[]), lines), @r"
+    error: unrecognized subcommand 'rendr'
+    error: the following required arguments were not provided:
+      --out <FILE>
+    error: the following required arguments were not provided:
+      <SCENE>
+    error: the following required arguments were not provided:
+      <IMAGE>
+    error: unexpected argument 'more' found
+    ");
+    let error = refusal(&folder(&[]), &["eq", "reflected-rai"]);
+    let start = "error: unknown label `reflected-rai`; known: reflected-ray, ";
+    assert!(error.starts_with(start), "{error}");
+}
+
+#[test]
+fn labels_are_found_from_any_folder() {
+    let all = text(&accepted(&folder(&[]), &["eq"]).stdout);
+    assert!(all.contains("\neq:reflected-ray  "), "{all}");
+    let one = text(&accepted(&folder(&[]), &["eq", "reflected-ray"]).stdout);
+    let first = one.lines().next().unwrap();
+    assert!(first.starts_with("crates/core/src/optics.rs:"), "{one}");
+    assert!(first.contains("definition  pub fn reflect("), "{one}");
+}
+
+#[test]
+fn a_reader_may_stop_reading() {
+    let folder = folder(&[]);
+    for arguments in [vec!["eq"], vec!["render", "whitted", "--size=8x8", "--out=new.png"]] {
+        let mut command = command(&folder, &arguments);
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
+        assert_eq!(text(&output.stderr), "");
+    }
+    assert!(load(folder.path().join("new.png")).is_ok());
+}
+
+#[test]
+fn scenes_and_models_are_rendered_in_both_formats() {
+    let folder = folder(&[("corner.obj", CORNER.as_bytes())]);
+    for (scene, name) in [
+        ("whitted", "old.png"),
+        ("whitted", "a.exr"),
+        ("corner.obj", "b.PNG"),
+        ("corner.obj", "c.exr"),
+        ("gears:1", "d.png"),
+    ] {
+        let output = accepted(&folder, &["render", scene, "--size=24x16", "--out", name]);
+        assert_eq!(text(&output.stderr), "", "{scene}");
+        assert!(text(&output.stdout).ends_with(&format!("picture {name}\n")));
+        let picture = load(folder.path().join(name)).unwrap();
+        assert_eq!(picture.size(), ImageSize::new(24, 16));
+        assert_eq!(picture.defects(), Default::default());
+        let first = picture.pixels()[0];
+        assert!(picture.pixels().iter().any(|pixel| *pixel != first), "{scene} is of one colour");
+    }
+    let names: Vec<String> = contents(folder.path()).into_iter().map(|(name, _)| name).collect();
+    assert_eq!(names, ["a.exr", "b.PNG", "c.exr", "corner.obj", "d.png", "old.png"]);
+}
+
+#[test]
+fn threads_and_indexes_do_not_change_a_byte() {
+    let folder = folder(&[]);
+    let bytes = |option: &str| {
+        let line = ["render", "whitted", "--size=40x24", "--spp=3", "--out=new.exr", option];
+        accepted(&folder, &line);
+        fs::read(folder.path().join("new.exr")).unwrap()
+    };
+    let expected = bytes("--threads=1");
+    assert_eq!(bytes("--threads=3"), expected);
+    assert_eq!(bytes("--index=linear"), expected);
+    assert_ne!(bytes("--seed=1"), expected);
+    assert_ne!(bytes("--method=appel"), expected);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_leaves_no_file() {
+    let folder = folder(&[]);
+    let line = ["render", "whitted", "--size=4096x4096", "--spp=2048", "--out=new.png"];
+    let mut command = command(&folder, &line);
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut reader = BufReader::new(child.stdout.take().unwrap());
+    let mut out = String::new();
+    reader.read_line(&mut out).unwrap();
+    assert!(out.starts_with("scene"), "{out}");
+    let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(kill.success());
+    reader.read_to_string(&mut out).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(!out.contains("picture"), "{out}");
+    assert_snapshot!(text(&output.stderr), @"error: interrupted; no file was written");
+    assert_eq!(contents(folder.path()), [("old.png".to_owned(), 3)]);
+}
+
+#[test]
+fn every_command_has_help() {
+    let help = |arguments: &[&str]| text(&accepted(&folder(&[]), arguments).stdout);
+    for command in ["render", "compare", "eq", "tidy"] {
+        assert_snapshot!(format!("help_{command}"), help(&[command, "--help"]));
+    }
+    let all = help(&["--help"]);
+    for command in ["figures", "render", "compare", "eq", "tidy"] {
+        assert!(all.contains(&format!("\n  {command} ")), "{all}");
+    }
+}
