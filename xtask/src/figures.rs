@@ -1,5 +1,6 @@
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
@@ -60,13 +61,13 @@ pub fn run(args: &Args) -> Result<()> {
     }
     let out = args.out.clone().unwrap_or_else(|| root().join("target").join("figures"));
     let effort = if args.quick { Effort::Quick } else { Effort::Full };
-    let interrupted = progress::watch_for_interrupt()?;
+    progress::watch_for_interrupt()?;
     let bar = progress::bar(selected.len() as u64, "drawing");
 
     let mut entries = Vec::new();
     let mut failed = Vec::new();
     for (chapter, figure) in selected {
-        if interrupted.load(std::sync::atomic::Ordering::Relaxed) {
+        if progress::INTERRUPTED.load(Ordering::Relaxed) {
             bail!("interrupted; the figures drawn so far are in {}", out.display());
         }
         bar.set_message(format!("{} {}", figure.id, figure.name));
