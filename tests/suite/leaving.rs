@@ -1,13 +1,14 @@
 //! A ray that leaves a surface does not meet it again where it starts, at any scale and place, and does
 //! not jump over a neighbour either.
 
+use chapter_1::naive::moeller_trumbore;
 use glam::DVec3;
 use lancer_core::generate::icosphere;
 use lancer_core::geometry::{Interval, Ray, Sphere};
 use lancer_core::intersector::{Intersector, LinearScan};
 use lancer_core::scene::{MaterialId, Mesh, Scene, SphereObject};
 
-use crate::meshes::{moeller_trumbore, scene_of};
+use crate::meshes::scene_of;
 use crate::random::Random;
 
 fn one_triangle(corners: [DVec3; 3]) -> Scene {

@@ -123,14 +123,3 @@ pub fn aimed_ray(mesh: &Mesh, offset: DVec3, target: Target, random: &mut Random
     let origin = offset + random.in_cube(0.3);
     Ray::new(origin, point - origin)
 }
-
-/// Möller, Trumbore 1997: neighbours compute different numbers for their common edge.
-pub fn moeller_trumbore([a, b, c]: [DVec3; 3], ray: &Ray) -> bool {
-    let (e1, e2, s) = (b - a, c - a, ray.origin - a);
-    let p = ray.direction.cross(e2);
-    let inverse = 1.0 / e1.dot(p);
-    let u = s.dot(p) * inverse;
-    let q = s.cross(e1);
-    let v = ray.direction.dot(q) * inverse;
-    u >= 0.0 && v >= 0.0 && u + v <= 1.0 && e2.dot(q) * inverse > 0.0
-}

@@ -1,13 +1,14 @@
 //! 0 leaks in rays aimed at shared edges and vertices of closed meshes. Random rays find nothing, not
 //! even with a leaking test, so every ray is aimed.
 
+use chapter_1::naive::{fused_edges, moeller_trumbore};
 use glam::DVec3;
 use lancer_accel::ObvhsBvh2;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::intersector::{Intersector, LinearScan};
 use lancer_core::scene::Mesh;
 
-use crate::meshes::{OFFSETS, Target, aimed_ray, closed_meshes, moeller_trumbore, moved, scene_of};
+use crate::meshes::{OFFSETS, Target, aimed_ray, closed_meshes, moved, scene_of};
 use crate::random::Random;
 
 /// Rays that leave a closed mesh from the inside without meeting it.
@@ -105,30 +106,12 @@ fn leaks_of(
         .count()
 }
 
-/// The watertight test with its edge functions rounded once instead of twice.
-fn one_fused_multiply_add(corners: [DVec3; 3], ray: &Ray) -> bool {
-    let last = (0..3)
-        .max_by(|&i, &j| ray.direction[i].abs().partial_cmp(&ray.direction[j].abs()).unwrap());
-    let z = last.unwrap();
-    let (x, y) = ((z + 1) % 3, (z + 2) % 3);
-    let (sx, sy) = (ray.direction[x] / ray.direction[z], ray.direction[y] / ray.direction[z]);
-    let [a, b, c] = corners.map(|corner| {
-        let v = corner - ray.origin;
-        (v[x] - sx * v[z], v[y] - sy * v[z], v[z] / ray.direction[z])
-    });
-    let edge = |p: (f64, f64, f64), q: (f64, f64, f64)| p.0.mul_add(q.1, -(p.1 * q.0));
-    let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
-    let det = u + v + w;
-    let mixed = (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0);
-    !mixed && det != 0.0 && (u * a.2 + v * b.2 + w * c.2) / det > 0.0
-}
-
 #[test]
 fn the_naive_tests_leak_where_ours_does_not() {
     let meshes = closed_meshes();
     let (icosphere, cube) = (&meshes[0].1, &meshes[3].1);
     let naive = leaks_of(moeller_trumbore, icosphere, Target::Vertex, 5_000);
     assert!(naive > 100, "Möller-Trumbore leaks {naive} of 5 000 at vertices");
-    let fused = leaks_of(one_fused_multiply_add, cube, Target::Edge, 50_000);
+    let fused = leaks_of(fused_edges, cube, Target::Edge, 50_000);
     assert!(fused > 1000, "one fused multiply-add leaks {fused} of 50 000 at edges");
 }

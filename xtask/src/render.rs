@@ -24,8 +24,8 @@ const INDEXES: [&str; 2] = ["linear", "obvhs-bvh2"];
 /// Renders a scene by any method of the course.
 ///
 /// SCENE is a .toml file, an .obj file (framed automatically, and lit by a lamp beside the camera if
-/// it has none), or a scene of the course: whitted, room, flake[:LEVEL], tetrahedra[:LEVEL],
-/// gears[:LEVEL].
+/// it has none), or a scene of the course: whitted, room, horizon, or one of flake, tetrahedra and gears
+/// with a level of detail, such as flake:4.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   cargo xtask render whitted --out whitted.png

@@ -1,4 +1,6 @@
 //! Chapter 1, « Introduction au lancer de rayons »: its scenes and its figures. The lesson is
 //! `README.md` beside this package's manifest.
 
+pub mod figures;
+pub mod naive;
 pub mod scenes;

@@ -8,7 +8,7 @@ use lancer_core::scene::load::{Loaded, parse_scene};
 use lancer_core::scene::{Camera, MaterialId, PointLight, Scene};
 
 /// The names of all scenes.
-pub const NAMES: [&str; 5] = ["whitted", "room", "flake", "tetrahedra", "gears"];
+pub const NAMES: [&str; 6] = ["whitted", "room", "horizon", "flake", "tetrahedra", "gears"];
 
 /// A generated scene: its name, the level it has unless another is asked for, the highest level, and
 /// what fills it.
@@ -40,17 +40,30 @@ const GENERATED: [Generated; 3] = [
     },
 ];
 
+/// The written scenes and their texts.
+const WRITTEN: [(&str, &str); 3] = [
+    ("whitted", include_str!("../scenes/whitted.toml")),
+    ("room", include_str!("../scenes/room.toml")),
+    ("horizon", include_str!("../scenes/horizon.toml")),
+];
+
 /// Whitted's composition of 1980, in an arrangement of our own.
 pub fn whitted() -> Scene {
-    written("whitted", include_str!("../scenes/whitted.toml"))
+    written(0)
 }
 
 /// A polyhedral room with a planar mirror and a rectangular lamp.
 pub fn room() -> Scene {
-    written("room", include_str!("../scenes/room.toml"))
+    written(1)
 }
 
-fn written(name: &str, text: &str) -> Scene {
+/// A checkered floor to the horizon.
+pub fn horizon() -> Scene {
+    written(2)
+}
+
+fn written(index: usize) -> Scene {
+    let (name, text) = WRITTEN[index];
     let loaded = parse_scene(text, name, Path::new(""));
     loaded.expect("a test loads every scene of the chapter").scene
 }
@@ -73,10 +86,8 @@ pub fn open(name: &str, level: Option<&str>) -> Result<Loaded> {
         return generated.open(level);
     }
     ensure!(level.is_none(), "{name}: only generated scenes have a level; leave it out");
-    let text = match name {
-        "whitted" => include_str!("../scenes/whitted.toml"),
-        "room" => include_str!("../scenes/room.toml"),
-        _ => bail!("unknown scene `{name}`"),
+    let Some((_, text)) = WRITTEN.iter().find(|(known, _)| *known == name) else {
+        bail!("unknown scene `{name}`; known: {}", NAMES.join(", "));
     };
     Ok(parse_scene(text, name, Path::new(""))?)
 }

@@ -34,7 +34,7 @@ fn main() -> std::io::Result<()> {
     let mut table = Table::new(["method", "samples", "rmse"]);
     for curve in curves() {
         for point in curve.points {
-            table.push([curve.method.as_str().into(), point.knob.into(), point.error.into()]);
+            table.push([curve.label.as_str().into(), point.knob.into(), point.error.into()]);
         }
     }
     write(&folder, "data.csv", table.to_csv().as_bytes())?;
@@ -126,7 +126,7 @@ fn described(plate: Plate) -> Plate {
 fn curves() -> Vec<MethodCurve> {
     let curve =
         |method: &str, label: &str, cost: f64, error: f64, slope: f64, knobs: &[u32]| MethodCurve {
-            method: method.into(),
+            color: method_color(method),
             label: label.into(),
             points: knobs
                 .iter()

@@ -3,10 +3,9 @@
 use crate::axis::Axis;
 use crate::canvas::Canvas;
 use crate::chart::{Chart, Series, Spread};
-use crate::data::{Table, Value};
 use crate::geometry::Rect;
-use crate::palette::method_color;
 use crate::plate::{Panel, Row};
+use crate::shape::Color;
 
 /// A method run at one setting of its knob.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,10 +23,10 @@ pub struct CurvePoint {
 /// A method run at several settings of its knob, in the knob's order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MethodCurve {
-    /// Its name in [`METHODS`](crate::METHODS), which decides the colour.
-    pub method: String,
     /// Its name in the chart.
     pub label: String,
+    /// Its colour: that of the method, or one of a category for variants of one method.
+    pub color: Color,
     /// One point for each setting.
     pub points: Vec<CurvePoint>,
 }
@@ -55,7 +54,7 @@ impl SpeedError {
         }
     }
 
-    /// With one more method; a second curve of the same method is dashed.
+    /// With one more method; a second curve of the same colour is dashed.
     pub fn curve(mut self, curve: MethodCurve) -> Self {
         self.curves.push(curve);
         self
@@ -71,23 +70,6 @@ impl SpeedError {
         Self { slope: Some((slope, label.into())), ..self }
     }
 
-    /// The measurements as a tidy table, one point a row.
-    pub fn table(&self) -> Table {
-        let seconds = ["seconds_min", "seconds_median", "seconds_max"];
-        let columns = ["method", "label", "knob", &self.work_unit].into_iter().chain(seconds);
-        let mut table = Table::new(columns.chain([self.error_name.as_str()]));
-        for curve in &self.curves {
-            for point in &curve.points {
-                let Spread { low, mid, high } = point.seconds;
-                let names = [curve.method.as_str(), &curve.label, &point.knob].map(Value::from);
-                let numbers =
-                    [point.work.into(), low.into(), mid.into(), high.into(), point.error.into()];
-                table.push(names.into_iter().chain(numbers));
-            }
-        }
-        table
-    }
-
     fn row(&self) -> Row {
         let work = |point: &CurvePoint| Spread::from(point.work as f64);
         let seconds = |point: &CurvePoint| point.seconds;
@@ -101,11 +83,11 @@ impl SpeedError {
             .title(title)
             .better_lower_left();
         for (i, curve) in self.curves.iter().enumerate() {
-            let mut series = Series::new(&curve.label, method_color(&curve.method));
+            let mut series = Series::new(&curve.label, curve.color);
             for point in &curve.points {
                 series = series.noted(cost(point), point.error, &point.knob);
             }
-            let repeated = self.curves[..i].iter().any(|other| other.method == curve.method);
+            let repeated = self.curves[..i].iter().any(|other| other.color == curve.color);
             chart = chart.series(if repeated { series.dashed() } else { series });
         }
         if let Some(residual) = self.residual {
@@ -131,6 +113,7 @@ impl Panel for SpeedError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::palette::method_color;
 
     fn chart() -> SpeedError {
         let point = |n: u64, error: f64| CurvePoint {
@@ -140,8 +123,8 @@ mod tests {
             error,
         };
         let curve = |method: &str, label: &str, factor: f64| MethodCurve {
-            method: method.into(),
             label: label.into(),
+            color: method_color(method),
             points: [1, 4, 16].map(|n| point(n, factor / (n as f64).sqrt())).to_vec(),
         };
         SpeedError::new("rays", "RMSE")
@@ -168,16 +151,6 @@ mod tests {
         }
         assert!(svg.contains("work (rays)") && svg.contains("time (s)"));
         assert!(svg.contains("stroke-dasharray=\"10 6\""), "the second of a method is dashed");
-    }
-
-    #[test]
-    fn the_table_has_a_row_for_each_point() {
-        let csv = chart().table().to_csv();
-        let mut lines = csv.lines();
-        let header = "method,label,knob,rays,seconds_min,seconds_median,seconds_max,RMSE";
-        assert_eq!(lines.next(), Some(header));
-        assert_eq!(lines.next(), Some("distributed,random,1,1000,0.01,0.02,0.04,0.3"));
-        assert_eq!(lines.count(), 8);
     }
 
     #[test]

@@ -32,6 +32,19 @@ pub struct Errors {
     pub flip: f64,
 }
 
+impl Errors {
+    /// The errors with the names they have in tables and charts.
+    pub fn named(&self) -> [(&'static str, f64); 5] {
+        [
+            ("RMSE", self.rmse),
+            ("relMSE", self.rel_mse),
+            ("max", self.max),
+            ("p99", self.p99),
+            ("FLIP", self.flip),
+        ]
+    }
+}
+
 /// The pictures to compare have different sizes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("cannot compare a picture of {estimate} with a reference of {reference} pixels")]

@@ -1,0 +1,207 @@
+//! 1.11: detail beyond the pixel grid comes back as false patterns; random sampling turns them into noise.
+
+use std::f64::consts::PI;
+
+use glam::DVec2;
+use lancer_core::Rgb;
+use lancer_core::image::{Image, ImageSize};
+use lancer_core::metric::{compare, rmse};
+use lancer_core::render::{Control, render_pixels};
+use lancer_core::sampling::{Pattern, PixelSampling};
+use lancer_core::scene::Scene;
+use lancer_figure::{
+    Contender, Effort, Finished, Inset, Montage, Plate, Study, Tile, category_color,
+};
+use lancer_whitted::{RayCounts, Settings};
+
+use super::{shown, trace_picture};
+use crate::scenes;
+
+const PATTERNS: [(Pattern, &str); 3] =
+    [(Pattern::Regular, "regular"), (Pattern::Jittered, "jittered"), (Pattern::Owen, "Owen")];
+/// Pictures with other seeds, to tell a false pattern from noise.
+const PICTURES: u64 = 16;
+const SAMPLES: [u32; 4] = [1, 4, 16, 64];
+
+/// Rings that get finer outwards: ½ + ½ cos(k r²). At three quarters of the side there is one
+/// ring to a pixel, which the pixels' centres take for none.
+struct ZonePlate {
+    size: ImageSize,
+    k: f64,
+}
+
+impl ZonePlate {
+    fn new(side: u32) -> Self {
+        // The phase k r² turns by 2 k r per pixel: by 2π at r = ¾ side.
+        Self { size: ImageSize::new(side, side), k: 4.0 / 3.0 * PI / f64::from(side) }
+    }
+
+    /// From the corner of the picture: only one quarter of the rings is shown.
+    fn value(&self, film: DVec2) -> f64 {
+        0.5 + 0.5 * (self.k * film.length_squared()).cos()
+    }
+
+    fn sampled(&self, sampling: PixelSampling) -> (Image, u64) {
+        let radiance = |film: DVec2, samples: &mut u64| {
+            *samples += 1;
+            Rgb::splat(self.value(film))
+        };
+        let rendering = render_pixels(self.size, sampling, Control::default(), radiance);
+        let rendering = rendering.expect("nobody cancels a figure");
+        (rendering.image, rendering.counts)
+    }
+
+    /// Each pixel's exact mean: cos(k x² + k y²) is a sum of products of functions of x and of y, whose
+    /// means over a pixel are one-dimensional.
+    fn exact(&self) -> Image {
+        let means: Vec<(f64, f64)> = (0..self.size.width)
+            .map(|x| {
+                let x = f64::from(x);
+                (
+                    mean_over_unit(|t| (self.k * (x + t).powi(2)).cos()),
+                    mean_over_unit(|t| (self.k * (x + t).powi(2)).sin()),
+                )
+            })
+            .collect();
+        let pixel = |x: usize, y: usize| {
+            let ((cos_x, sin_x), (cos_y, sin_y)) = (means[x], means[y]);
+            [(0.5 + 0.5 * (cos_x * cos_y - sin_x * sin_y)) as f32; 3]
+        };
+        let side = self.size.width as usize;
+        let pixels = (0..side * side).map(|i| pixel(i % side, i / side)).collect();
+        Image::from_pixels(self.size, pixels)
+    }
+}
+
+/// The mean of a function over [0, 1] by the 8-point Gauss-Legendre rule on 8 parts.
+fn mean_over_unit(f: impl Fn(f64) -> f64) -> f64 {
+    const NODES: [(f64, f64); 4] = [
+        (0.183_434_642_495_649_8, 0.362_683_783_378_362),
+        (0.525_532_409_916_329, 0.313_706_645_877_887_3),
+        (0.796_666_477_413_626_7, 0.222_381_034_453_374_48),
+        (0.960_289_856_497_536_3, 0.101_228_536_290_376_26),
+    ];
+    let part = |k: i32| {
+        let middle = (f64::from(k) + 0.5) / 8.0;
+        let pair =
+            |&(x, weight): &(f64, f64)| weight * (f(middle - x / 16.0) + f(middle + x / 16.0));
+        NODES.iter().map(pair).sum::<f64>() / 16.0
+    };
+    (0..8).map(part).sum()
+}
+
+/// The mean of several pictures of one size.
+fn mean_picture(pictures: &[Image]) -> Image {
+    let size = pictures[0].size();
+    let pixels = (0..size.pixels()).map(|i| {
+        let sum: f64 = pictures.iter().map(|picture| f64::from(picture.pixels()[i][0])).sum();
+        [(sum / pictures.len() as f64) as f32; 3]
+    });
+    Image::from_pixels(size, pixels.collect())
+}
+
+pub fn make(effort: Effort) -> Finished {
+    let zone_plate = ZonePlate::new(effort.pick(96, 320));
+    let reference = zone_plate.exact();
+    let contenders = PATTERNS
+        .iter()
+        .enumerate()
+        .flat_map(|(k, &(pattern, name))| {
+            let zone_plate = &zone_plate;
+            SAMPLES.map(|samples| Contender {
+                label: name.to_owned(),
+                color: [category_color(3), category_color(0), category_color(2)][k],
+                knob: samples.to_string(),
+                run: Box::new(move || {
+                    zone_plate.sampled(PixelSampling { pattern, samples, seed: 11 })
+                }),
+            })
+        })
+        .collect();
+    let (study, pictures) = Study::measure("samples", 3, contenders, |image: &Image| {
+        compare(&reference, image).expect("pictures of one size").named().to_vec()
+    });
+
+    let rmse_of = |image: &Image| rmse(&reference, image).expect("pictures of one size");
+    // What is left of the error in the mean of 16 pictures with seeds of their own.
+    let left = |pattern: Pattern| {
+        let with_seed = |seed| zone_plate.sampled(PixelSampling { pattern, samples: 1, seed }).0;
+        let pictures: Vec<Image> = (101..101 + PICTURES).map(with_seed).collect();
+        rmse_of(&mean_picture(&pictures)) / rmse_of(&pictures[0])
+    };
+    let [regular, jittered, owen] = PATTERNS.map(|(pattern, _)| left(pattern));
+    // Independent errors leave a quarter; the rest is the spread of a finite picture.
+    let holds = regular > 0.99 && jittered < 0.3 && owen < 0.3;
+    let claim = format!(
+        "With a sample per pixel a regular grid shows rings that are not there, in every picture anew: {:.0} \
+         % of its error is left in the mean of {PICTURES} pictures. Of jittered samples' error, noise, {:.0} % is.",
+        100.0 * regular,
+        100.0 * jittered
+    );
+
+    let picture = |name: &str, samples: u32| {
+        let curve = PATTERNS.iter().position(|(_, known)| *known == name).unwrap_or_default();
+        let point = SAMPLES.iter().position(|known| *known == samples).unwrap_or_default();
+        let error = study.error(name, &samples.to_string(), "RMSE");
+        Tile::new(
+            format!("{name}, {samples} per pixel"),
+            shown(&pictures[SAMPLES.len() * curve + point]),
+        )
+        .subtitle(format!("RMSE {error:.3}"))
+    };
+    let floor = Floor::new(effort);
+    let plate = Plate::new("1.11", "Aliasing, and what jitter does to it", claim, holds)
+        .panel(
+            Montage::new()
+                .tile(Tile::new("exact", shown(&reference)).subtitle("rings ever finer to the lower right"))
+                .tile(picture("regular", 1).color(category_color(3)))
+                .tile(picture("jittered", 1).color(category_color(0)))
+                .tile(picture("jittered", 16).color(category_color(0))),
+        )
+        .panel(study.chart("RMSE").slope(-0.5, "slope −1/2, random"))
+        .panel(
+            Montage::new()
+                .tile(floor.tile("regular, 1 per pixel", Pattern::Regular, 1))
+                .tile(floor.tile("jittered, 16 per pixel", Pattern::Jittered, 16))
+                .inset(floor.inset)
+                .insets_right()
+                .columns(2),
+        )
+
+        .note(
+            "Zone plate",
+            "½ + ½ cos(k r²), r from the upper left corner; at three quarters of the side there is one \
+             ring to a pixel",
+        )
+        .note("Floor", "the slides' « aliassage » on a checkered floor to the horizon, by algo:lr")
+        .note("Settings", format!(
+            "zone plate {}, floor {}, box filter, seed 11; « Owen » is the scrambled Sobol sequence that \
+             cargo xtask render --spp uses",
+            zone_plate.size, floor.size
+        ))
+        .note("Reference", "exact: the mean of each pixel by products of one-dimensional integrals, to 1e-7 \
+             (stored in 32 bits)");
+    Finished { plate, data: study.table() }
+}
+
+/// A checkered floor to the horizon.
+struct Floor {
+    scene: Scene,
+    size: ImageSize,
+    inset: Inset,
+}
+
+impl Floor {
+    fn new(effort: Effort) -> Self {
+        let size = effort.pick(ImageSize::new(96, 48), ImageSize::new(320, 160));
+        let inset = effort.pick(Inset::new(36, 14, 24, 12), Inset::new(120, 44, 72, 36));
+        Self { scene: scenes::horizon(), size, inset }
+    }
+
+    fn tile(&self, title: &str, pattern: Pattern, samples: u32) -> Tile {
+        let sampling = PixelSampling { pattern, samples, seed: 11 };
+        let settings = Settings::default();
+        let rendering = trace_picture::<RayCounts>(&self.scene, settings, self.size, sampling);
+        Tile::new(title, shown(&rendering.image))
+    }
+}

@@ -1,0 +1,157 @@
+//! 1.7: what each further bounce brings and costs, and the choice of the colour at the limit.
+
+use std::ops::AddAssign;
+
+use lancer_core::image::{Image, ImageSize};
+use lancer_core::metric::{absolute_error_map, compare};
+use lancer_core::sampling::PixelSampling;
+use lancer_core::scene::Scene;
+use lancer_figure::{
+    Axis, Chart, Contender, Effort, Finished, Montage, Plate, Row, Series, Study, Tile,
+    category_color, method_color, number,
+};
+use lancer_whitted::{AtLimit, Call, RayCounts, Recorder, Settings};
+
+use super::{shown, trace_picture};
+use crate::scenes;
+
+/// Counts the rays, and the weight of those that were cut: what the picture may still lack.
+#[derive(Clone, Copy, Debug, Default)]
+struct WeightLeft {
+    rays: RayCounts,
+    weight: f64,
+}
+
+impl Recorder for WeightLeft {
+    fn enter(&mut self, call: &Call) {
+        self.rays.enter(call);
+    }
+
+    fn shadow(&mut self, ray: &lancer_core::geometry::Ray, visible: bool) {
+        self.rays.shadow(ray, visible);
+    }
+
+    fn cut(&mut self, call: &Call) {
+        self.weight += call.weight;
+    }
+}
+
+impl AddAssign for WeightLeft {
+    fn add_assign(&mut self, other: Self) {
+        self.rays += other.rays;
+        self.weight += other.weight;
+    }
+}
+
+const LIMITS: [(AtLimit, &str); 3] =
+    [(AtLimit::Black, "black"), (AtLimit::Ambient, "ambient"), (AtLimit::Background, "background")];
+const REFERENCE_DEPTH: u32 = 14;
+const DEPTHS: [u32; 9] = [0, 1, 2, 3, 4, 5, 6, 8, 10];
+
+pub fn make(effort: Effort) -> Finished {
+    let scene = scenes::whitted();
+    let size = effort.pick(ImageSize::new(48, 48), ImageSize::new(240, 240));
+    let render = |settings| render(&scene, settings, size);
+    let unlimited = |max_depth| Settings { max_depth, min_weight: 0.0, at_limit: AtLimit::Black };
+    let reference = render(unlimited(REFERENCE_DEPTH));
+    let pixels = size.pixels() as f64;
+    let residual = reference.1.weight / pixels;
+
+    let contenders = LIMITS
+        .iter()
+        .enumerate()
+        .flat_map(|(k, &(at_limit, name))| {
+            DEPTHS.map(|max_depth| Contender {
+                label: name.to_owned(),
+                color: [method_color("whitted"), category_color(1), category_color(2)][k],
+                knob: max_depth.to_string(),
+                run: Box::new(move || {
+                    let (image, counts) = render(Settings { at_limit, ..unlimited(max_depth) });
+                    ((image, counts.weight / pixels), counts.rays.total())
+                }),
+            })
+        })
+        .collect();
+    let (study, outcomes) =
+        Study::measure("rays", 3, contenders, |(image, weight): &(Image, f64)| {
+            let errors = compare(&reference.0, image).expect("pictures of one size");
+            let mean = mean_error(&reference.0, image);
+            errors
+                .named()
+                .into_iter()
+                .chain([("mean_abs", mean), ("weight_left", *weight)])
+                .collect()
+        });
+
+    // The lost light per weight left: the mean radiance behind the cut rays, about the same everywhere.
+    let lost = |depth: u32| {
+        let at = |name| study.error("black", &depth.to_string(), name);
+        at("mean_abs") / at("weight_left")
+    };
+    let measured: Vec<u32> = DEPTHS.into_iter().filter(|depth| (1..=8).contains(depth)).collect();
+    let ratios: Vec<f64> = measured.iter().map(|&depth| lost(depth)).collect();
+    let least = ratios.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = ratios.iter().copied().fold(0.0, f64::max);
+    let fall = study.error("black", "1", "mean_abs") / study.error("black", "8", "mean_abs");
+    let holds = most / least < 3.0 && fall > 50.0;
+    let claim = format!(
+        "The error follows the weight that each bounce leaves: from depth 1 to 8 both fall by a factor of \
+         {}, and the light lost per weight stays between {least:.2} and {most:.2}.",
+        number(fall)
+    );
+
+    let mut montage = Montage::new().columns(5);
+    for depth in [0, 1, 2, 3, 5] {
+        let k = DEPTHS.iter().position(|known| *known == depth).unwrap_or_default();
+        let knob = depth.to_string();
+        let rays = study.work("black", &knob) as f64 / pixels;
+        let error = study.error("black", &knob, "RMSE");
+        montage = montage.tile(
+            Tile::new(format!("depth {depth}"), shown(&outcomes[k].0))
+                .subtitle(format!("{rays:.1} rays/pixel, RMSE {}", number(error)))
+                .color(method_color("whitted")),
+        );
+    }
+    let mut bounces = Chart::new(Axis::linear("depth limit, Max_Prof"), Axis::log("per pixel"))
+        .title("Error and weight left");
+    for (name, label, color) in [
+        ("weight_left", "weight of the cut rays", category_color(3)),
+        ("mean_abs", "mean |error|, black at the limit", method_color("whitted")),
+    ] {
+        let points = DEPTHS.map(|d| (f64::from(d), study.error("black", &d.to_string(), name)));
+        bounces = bounces.series(Series::new(label, color).points(points));
+    }
+    let best = |depth: u32| {
+        let error = |name: &str| study.error(name, &depth.to_string(), "RMSE");
+        let by_error =
+            |a: &&(AtLimit, &str), b: &&(AtLimit, &str)| error(a.1).total_cmp(&error(b.1));
+        LIMITS.iter().min_by(by_error).map_or("", |(_, name)| name)
+    };
+    let plate = Plate::new("1.7", "How deep to follow the rays", claim, holds)
+        .panel(montage)
+        .panel(study.chart("RMSE").reference_error(residual))
+        .panel(Row::new().panel(1.0, bounces))
+        .note("« choix discutable »", format!(
+            "the colour where the recursion ends: the smallest error at depth 1 has {}, at depth 3 {}, at \
+             depth 5 {}",
+            best(1), best(3), best(5)
+        ))
+        .note("Method", "algo:lr, eq:recursion; the work counts all rays, shadow rays included")
+        .note("Settings", format!("scene whitted, {size}, 1 sample per pixel, no minimum weight"))
+        .note("Reference", format!(
+            "algo:lr to depth {REFERENCE_DEPTH}; the weight it leaves, {} per pixel, bounds its own error \
+                 per unit of radiance",
+                number(residual)
+        ));
+    Finished { plate, data: study.table() }
+}
+
+fn render(scene: &Scene, settings: Settings, size: ImageSize) -> (Image, WeightLeft) {
+    let rendering = trace_picture::<WeightLeft>(scene, settings, size, PixelSampling::CENTER);
+    (rendering.image, rendering.counts)
+}
+
+fn mean_error(reference: &Image, image: &Image) -> f64 {
+    let errors = absolute_error_map(reference, image).expect("pictures of one size");
+    errors.iter().sum::<f64>() / errors.len() as f64
+}

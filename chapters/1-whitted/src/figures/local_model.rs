@@ -1,0 +1,164 @@
+//! 1.2: the picture built up term by term, and the terms' sum against the picture.
+
+use glam::DVec2;
+use lancer_accel::ObvhsBvh2;
+use lancer_core::Rgb;
+use lancer_core::geometry::Interval;
+use lancer_core::illumination::{Reflectance, ambient, attenuation, local};
+use lancer_core::image::{Image, ImageSize};
+use lancer_core::intersector::Intersector;
+use lancer_core::scene::Scene;
+use lancer_core::world::{PointSource, World};
+use lancer_figure::{
+    BarChart, Effort, Finished, Montage, Plate, Row, Table, Tile, category_color, number,
+};
+use lancer_whitted::{RayKind, RayTree, Settings, Whitted};
+
+use super::shown;
+use crate::scenes;
+
+const TERMS: [&str; 6] = ["ambient", "diffuse", "specular", "shadows", "reflection", "refraction"];
+
+pub fn make(effort: Effort) -> Finished {
+    let scene = scenes::whitted();
+    let size = effort.pick(ImageSize::new(48, 48), ImageSize::new(320, 320));
+    let (terms, picture) = terms_of(&scene, size);
+
+    let largest = terms
+        .iter()
+        .zip(&picture)
+        .map(|(terms, whole)| (terms.iter().sum::<Rgb>() - *whole).abs().max_element())
+        .fold(0.0, f64::max);
+    let brightest = picture.iter().map(|p| p.max_element()).fold(0.0, f64::max);
+    // Rounding of R·V grows with the exponent of the highlight.
+    let exponent = scene.materials.iter().map(|material| material.shininess).fold(1.0, f64::max);
+    let holds = largest <= 2.0 * exponent * f64::EPSILON * brightest;
+    let claim = format!(
+        "The six terms add up to Whitted's picture: no pixel differs by more than {}, \
+         which is rounding.",
+        number(largest)
+    );
+
+    let mut montage = Montage::new().columns(3);
+    let mut sums = vec![Rgb::ZERO; terms.len()];
+    for (k, name) in TERMS.iter().enumerate() {
+        for (sum, terms) in sums.iter_mut().zip(&terms) {
+            *sum += terms[k];
+        }
+        let pixels = sums.iter().map(|p| p.as_vec3().to_array()).collect();
+        let title = if k == 0 { "ambient + background".to_owned() } else { format!("+ {name}") };
+        montage = montage.tile(
+            Tile::new(title, shown(&Image::from_pixels(size, pixels))).color(category_color(k)),
+        );
+    }
+
+    let mut data = Table::new(["term", "mean_radiance", "share"]);
+    let count = terms.len() as f64;
+    let mean = |of: &dyn Fn(&[Rgb; 6]) -> Rgb| {
+        terms.iter().map(|t| of(t).element_sum() / 3.0).sum::<f64>() / count
+    };
+    let total = mean(&|t| t.iter().sum());
+    let means: Vec<f64> = (0..TERMS.len()).map(|k| mean(&|t| t[k])).collect();
+    for (name, value) in TERMS.iter().zip(&means) {
+        data.push([(*name).into(), (*value).into(), (value / total).into()]);
+    }
+    let bars = BarChart::new("mean of the picture (radiance)", TERMS)
+        .title("What each term changes (« ambient » with the background)")
+        .stacked()
+        .series("adds", category_color(0), means.iter().map(|m| m.max(0.0)).collect::<Vec<_>>())
+        .series(
+            "takes",
+            category_color(3),
+            means.iter().map(|m| (-m).max(0.0)).collect::<Vec<_>>(),
+        );
+
+    let plate = Plate::new("1.2", "The local model, term by term", claim, holds)
+        .panel(montage)
+        .panel(Row::new().panel(1.0, bars))
+        .note("Method", "eq:ambient, eq:local with ρ_d and ρ_s apart, eq:attenuation, eq:recursion; each \
+             picture adds one term to those before, « shadows » takes back the light that vis(i) = 0 stops")
+        .note("Settings", format!("scene whitted, {size}, 1 sample per pixel, depth 5"))
+        .note("Reference", "algo:lr, which knows nothing of the terms");
+    Finished { plate, data }
+}
+
+/// For each pixel the six terms of what its ray brings back, and what Whitted's method says of it.
+fn terms_of(scene: &Scene, size: ImageSize) -> (Vec<[Rgb; 6]>, Vec<Rgb>) {
+    let index = ObvhsBvh2::build(scene);
+    let world = World { scene, index: &index };
+    let whitted = Whitted::new(world, Settings::default());
+    let rays = scene.camera.primary_rays(size);
+    let sources = scene.point_sources();
+    let pixels = (0..size.height).flat_map(|y| (0..size.width).map(move |x| (x, y)));
+    pixels
+        .map(|(x, y)| {
+            let film = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+            let ray = rays.through(film.x, film.y);
+            let mut tree = RayTree::default();
+            let radiance = whitted.trace(&ray, &mut tree);
+            let Some(hit) = index.closest_hit(&ray, Interval::POSITIVE) else {
+                let mut terms = [Rgb::ZERO; 6];
+                terms[0] = scene.background;
+                return (terms, radiance);
+            };
+            let surface = scene.surface_at(&ray, &hit);
+            let material = scene.material(surface.material);
+            let n = surface.shading_normal_towards(-ray.direction);
+            let rho_d = material.rho_d.at(surface.position, surface.geometric_normal);
+            let only = |diffuse: Rgb, specular: Rgb| Reflectance {
+                diffuse,
+                specular,
+                shininess: material.shininess,
+            };
+            let mut terms = [Rgb::ZERO; 6];
+            terms[0] = material.emission + ambient(rho_d, scene.ambient);
+            for source in &sources {
+                let lit = |reflectance: &Reflectance| {
+                    light(
+                        source,
+                        reflectance,
+                        &surface.spawn_to(source.position),
+                        n,
+                        -ray.direction,
+                    )
+                };
+                let (diffuse, specular) =
+                    (lit(&only(rho_d, Rgb::ZERO)), lit(&only(Rgb::ZERO, material.rho_s)));
+                terms[1] += diffuse;
+                terms[2] += specular;
+                let shadow_ray = surface.spawn_to(source.position);
+                if index.occluded(&shadow_ray, Interval::up_to(1.0)) {
+                    terms[3] -= diffuse + specular;
+                }
+            }
+            // The two rays from the surface, weighted as eq:recursion does. Where nothing is refracted,
+            // total reflection has given the mirror both shares.
+            let children = || tree.nodes.iter().filter(|node| node.parent == Some(0));
+            let refracts = children().any(|node| node.call.kind == RayKind::Refracted);
+            for child in children() {
+                match child.call.kind {
+                    RayKind::Mirror => {
+                        let k_t = if refracts { Rgb::ZERO } else { material.k_t };
+                        terms[4] += (material.k_s + k_t) * child.radiance;
+                    }
+                    _ => terms[5] += material.k_t * child.radiance,
+                }
+            }
+            (terms, radiance)
+        })
+        .unzip()
+}
+
+/// One light's part of eq:local, as if nothing stood in its way.
+fn light(
+    source: &PointSource,
+    reflectance: &Reflectance,
+    to_source: &lancer_core::geometry::Ray,
+    n: glam::DVec3,
+    to_eye: glam::DVec3,
+) -> Rgb {
+    let distance = to_source.direction.length();
+    let to_light = to_source.direction / distance;
+    let g = attenuation(true, distance);
+    local(source.intensity_towards(to_light), g, reflectance, n, to_light, to_eye)
+}

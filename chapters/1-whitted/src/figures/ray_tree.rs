@@ -1,0 +1,230 @@
+//! 1.6: one pixel's rays in the scene, beside the tree of the calls that traced them.
+
+use glam::DVec2;
+use lancer_accel::ObvhsBvh2;
+use lancer_core::Rgb;
+use lancer_core::image::ImageSize;
+use lancer_core::scene::Scene;
+use lancer_core::world::World;
+use lancer_figure::{
+    Color, Drawing, Effort, FAINT, Finished, INK, LABEL, MUTED, Montage, Pen, Picture, Plate, Row,
+    Stroke, Style, TICK, Table, Text, Tile, Tree, category_color, number,
+};
+use lancer_whitted::{
+    AtLimit, RayCounts, RayEnd, RayKind, RayNode, RayTree, Settings, Whitted, recursion,
+};
+
+use super::{shown, whitted_picture};
+use crate::scenes;
+
+const SIZE: ImageSize = ImageSize::new(256, 256);
+/// A pixel whose ray passes through glass to plastic, the mirror and the floor.
+const PIXEL: (u32, u32) = (123, 78);
+const SETTINGS: Settings = Settings { max_depth: 4, min_weight: 0.01, at_limit: AtLimit::Black };
+
+pub fn make(_: Effort) -> Finished {
+    let scene = scenes::whitted();
+    let index = ObvhsBvh2::build(&scene);
+    let whitted = Whitted::new(World { scene: &scene, index: &index }, SETTINGS);
+    let film = DVec2::new(f64::from(PIXEL.0) + 0.5, f64::from(PIXEL.1) + 0.5);
+    let ray = scene.camera.primary_rays(SIZE).through(film.x, film.y);
+    let (mut tree, mut counts) = (RayTree::default(), RayCounts::default());
+    let radiance = whitted.trace(&ray, &mut tree);
+    whitted.trace(&ray, &mut counts);
+
+    let traced = counts.primary + counts.mirror + counts.refracted;
+    let difference = (summed_up(&scene, &tree, 0) - radiance).abs().max_element();
+    let shadows: usize = tree.nodes.iter().map(|node| node.shadows.len()).sum();
+    let holds =
+        tree.traced() as u64 == traced && shadows as u64 == counts.shadow && difference <= 1e-14;
+    let difference_text = if difference == 0.0 {
+        "to the last bit".to_owned()
+    } else {
+        format!("to {}", number(difference))
+    };
+    let claim = format!(
+        "The tree has a node for each of the {traced} rays that were traced, and summing it up by \
+         I_Local + k_s I_Refl + k_t I_Trans gives the pixel again, {difference_text}."
+    );
+
+    let mut data = Table::new([
+        "node",
+        "parent",
+        "kind",
+        "depth",
+        "weight",
+        "end",
+        "shadow_rays",
+        "radiance_r",
+        "radiance_g",
+        "radiance_b",
+    ]);
+    for (k, node) in tree.nodes.iter().enumerate() {
+        data.push([
+            k.into(),
+            node.parent.map_or_else(|| "".into(), Into::into),
+            kind(node.call.kind).0.into(),
+            node.call.depth.into(),
+            node.call.weight.into(),
+            end(&scene, node).into(),
+            node.shadows.len().into(),
+            node.radiance.x.into(),
+            node.radiance.y.into(),
+            node.radiance.z.into(),
+        ]);
+    }
+
+    let picture = whitted_picture(&scene, Settings::default(), SIZE).image;
+    let plate = Plate::new("1.6", "The ray tree of one pixel", claim, holds)
+        .panel(
+            Row::new()
+                .panel(1.0, Montage::new().tile(Tile::new("The pixel", marked(shown(&picture)))))
+                .panel(1.55, from_above(&scene, &tree)),
+        )
+        .panel(drawn(&scene, &tree, 0))
+        .note("Drawing", "the scene from above; the numbers are those of the tree's nodes. Edges: what the \
+             ray is and its share k; nodes: what it meets")
+        .note("Settings", format!(
+            "scene whitted, pixel ({}, {}) of {SIZE}, depth {}, rays that count less than {} are cut; \
+             {} shadow rays are not drawn",
+            PIXEL.0, PIXEL.1, SETTINGS.max_depth, SETTINGS.min_weight, shadows
+        ))
+        .note("Method", "algo:lr followed by a recorder (fig:ray-tree); eq:recursion");
+    Finished { plate, data }
+}
+
+/// The radiance of a node from its own local term and its children, by eq:recursion.
+fn summed_up(scene: &Scene, tree: &RayTree, k: usize) -> Rgb {
+    let node = &tree.nodes[k];
+    let RayEnd::Surface { hit, local, .. } = node.end else { return node.radiance };
+    let material = scene.material(scene.surface_at(&node.call.ray, &hit).material);
+    let child = |kind: RayKind| {
+        let is_child = |&k: &usize| {
+            tree.nodes[k].parent == Some(node_index(tree, node)) && tree.nodes[k].call.kind == kind
+        };
+        (0..tree.nodes.len()).find(is_child)
+    };
+    let (mirror, refracted) = (child(RayKind::Mirror), child(RayKind::Refracted));
+    let below =
+        |child: Option<usize>| child.map_or(Rgb::ZERO, |child| summed_up(scene, tree, child));
+    // Total reflection gives both shares to the mirror.
+    let k_s = if refracted.is_none() { material.k_s + material.k_t } else { material.k_s };
+    recursion(local, k_s, below(mirror), material.k_t, below(refracted))
+}
+
+fn node_index(tree: &RayTree, node: &RayNode) -> usize {
+    tree.nodes.iter().position(|other| std::ptr::eq(other, node)).unwrap_or_default()
+}
+
+fn kind(kind: RayKind) -> (&'static str, Color) {
+    match kind {
+        RayKind::Primary => ("primary", INK),
+        RayKind::Mirror => ("mirror", category_color(3)),
+        RayKind::Refracted => ("refracted", category_color(0)),
+    }
+}
+
+/// What a ray came to.
+fn end(scene: &Scene, node: &RayNode) -> &'static str {
+    match node.end {
+        RayEnd::Background => "background",
+        RayEnd::Cut => "cut",
+        RayEnd::Surface { hit, .. } => {
+            let material = scene.material(scene.surface_at(&node.call.ray, &hit).material);
+            if material.k_t != Rgb::ZERO {
+                "glass"
+            } else if material.k_s.max_element() > 0.5 {
+                "mirror"
+            } else if material.k_s != Rgb::ZERO {
+                "plastic"
+            } else {
+                "floor"
+            }
+        }
+    }
+}
+
+fn drawn(scene: &Scene, tree: &RayTree, k: usize) -> Tree {
+    let node = &tree.nodes[k];
+    let color = if matches!(node.end, RayEnd::Cut) { MUTED } else { kind(node.call.kind).1 };
+    let label = format!("{} {}", k + 1, end(scene, node));
+    let children = (0..tree.nodes.len()).filter(|&child| tree.nodes[child].parent == Some(k));
+    children.fold(Tree::new(label, color), |drawing, child| {
+        let share = tree.nodes[child].call.weight / node.call.weight;
+        let edge = format!("{} {}", kind(tree.nodes[child].call.kind).0, number(share));
+        drawing.child(edge, drawn(scene, tree, child))
+    })
+}
+
+/// The picture with its pixel in a frame.
+fn marked(picture: Picture) -> Picture {
+    let around = |x: u32, y: u32| {
+        let (dx, dy) = (x.abs_diff(PIXEL.0), y.abs_diff(PIXEL.1));
+        (6..=7).contains(&dx.max(dy)) || (dx.max(dy) > 7 && dx.max(dy) < 22 && dx.min(dy) == 0)
+    };
+    Picture::from_fn(picture.width(), picture.height(), |x, y| {
+        if around(x, y) { [20, 20, 20] } else { picture.get(x, y) }
+    })
+}
+
+/// The rays seen from above, x to the right and away from the eye upwards.
+fn from_above(scene: &Scene, tree: &RayTree) -> Drawing {
+    let spheres: Vec<_> = scene.spheres.iter().map(|sphere| sphere.shape).collect();
+    let rays: Vec<_> = tree
+        .nodes
+        .iter()
+        .enumerate()
+        .filter(|(_, node)| !matches!(node.end, RayEnd::Cut))
+        .map(|(k, node)| {
+            let from = node.call.ray.origin;
+            let to = match node.end {
+                RayEnd::Surface { position, .. } => position,
+                _ => from + 1.6 * node.call.ray.direction,
+            };
+            ([from.x, -from.z], [to.x, -to.z], kind(node.call.kind).1, k + 1)
+        })
+        .collect();
+    let draw = move |pen: &mut Pen<'_>| {
+        for z in -4..4 {
+            for x in -4..4 {
+                if (x + z) % 2 == 0 {
+                    let (x, z) = (f64::from(x), f64::from(z));
+                    let cell = [[x, z], [x + 1.0, z], [x + 1.0, z + 1.0], [x, z + 1.0]];
+                    pen.polygon(
+                        &cell.map(|p| [p[0].clamp(-3.6, 3.6), p[1].clamp(-3.2, 3.4)]),
+                        Style::fill(FAINT.with_alpha(90)),
+                    );
+                }
+            }
+        }
+        for (sphere, (name, color)) in spheres.iter().zip([
+            ("glass", category_color(4)),
+            ("mirror", category_color(5)),
+            ("plastic", category_color(0)),
+        ]) {
+            let center = [sphere.center.x, -sphere.center.z];
+            pen.circle(
+                center,
+                sphere.radius,
+                Style::fill(color.with_alpha(60)).outlined(color, 2.0),
+            );
+            pen.label(
+                [center[0], center[1] - sphere.radius],
+                [0.0, -14.0],
+                Text::new(name, TICK).color(MUTED),
+            );
+        }
+        pen.label([-2.7, 3.1], [0.0, 0.0], Text::new("seen from above", LABEL).bold());
+        for (from, to, color, number) in &rays {
+            let from = [from[0], from[1].max(-3.2)];
+            pen.arrow(from, *to, Stroke::new(*color, 2.5));
+            let middle = [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])];
+            pen.label(
+                middle,
+                [0.0, 0.0],
+                Text::new(number.to_string(), LABEL).bold().color(color.for_text()),
+            );
+        }
+    };
+    Drawing::new([-3.6, -3.2], [3.6, 3.4], 560.0, draw)
+}

@@ -1,0 +1,133 @@
+//! Every figure of the chapter at its quick size: the claim holds, and the plate is legible.
+//!
+//! What the claims rest on (counts and errors) is the same on every machine; seconds are not looked at.
+
+use chapter_1::figures::FIGURES;
+use lancer_figure::{Effort, Finished, Verdict};
+
+fn made(id: &str) -> Finished {
+    let figure = FIGURES.iter().find(|figure| figure.id == id).expect("a figure of the chapter");
+    let finished = (figure.make)(Effort::Quick);
+    assert_eq!(finished.plate.id(), id);
+    assert_eq!(finished.plate.verdict(), Verdict::Holds, "{}", finished.plate.claim());
+    assert_eq!(finished.plate.canvas().faults(), [], "{id}: text overlaps or leaves the plate");
+    finished
+}
+
+/// The rows of a figure's data as (column, value) pairs.
+fn rows(finished: &Finished) -> Vec<Vec<(String, String)>> {
+    let csv = finished.data.to_csv();
+    let mut lines = csv.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
+    let header = lines.next().expect("a header");
+    lines.map(|row| header.iter().cloned().zip(row).collect()).collect()
+}
+
+fn field<'a>(row: &'a [(String, String)], column: &str) -> &'a str {
+    let found = row.iter().find(|(name, _)| name == column);
+    &found.unwrap_or_else(|| panic!("no column {column}")).1
+}
+
+fn value(row: &[(String, String)], column: &str) -> f64 {
+    field(row, column).parse().expect("a number")
+}
+
+#[test]
+fn ids_and_names_are_unique() {
+    let mut names: Vec<&str> = FIGURES.iter().flat_map(|figure| [figure.id, figure.name]).collect();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), 2 * FIGURES.len());
+}
+
+/// 0.3, eq:ray-triangle: our test never leaks, Möller-Trumbore does at edges and at vertices.
+#[test]
+fn watertight() {
+    let finished = made("0.3");
+    for row in rows(&finished) {
+        let leaks = value(&row, "leaks");
+        match (field(&row, "test"), field(&row, "aim")) {
+            ("watertight", _) | (_, "random directions") => assert_eq!(leaks, 0.0),
+            ("Möller-Trumbore", _) => assert!(leaks > 50.0, "{row:?}"),
+            _ => (),
+        }
+    }
+}
+
+/// 1.2, eq:local and eq:ambient: every term has its sign, and shadows take no more than the lights gave.
+#[test]
+fn local_model() {
+    let means: Vec<f64> =
+        rows(&made("1.2")).iter().map(|row| value(row, "mean_radiance")).collect();
+    let [ambient, diffuse, specular, shadows, reflection, refraction] = means[..] else {
+        panic!("six terms")
+    };
+    assert!([ambient, diffuse, specular, reflection, refraction].iter().all(|&mean| mean > 0.0));
+    assert!(shadows < 0.0 && -shadows < diffuse + specular);
+}
+
+/// 1.5, eq:descartes at the table's own angles.
+#[test]
+fn descartes() {
+    let finished = made("1.5");
+    let out = |n1: f64, n2: f64, degrees: f64| {
+        let rows = rows(&finished);
+        let row = rows.iter().find(|row| {
+            (value(row, "n1"), value(row, "n2"), value(row, "degrees_in")) == (n1, n2, degrees)
+        });
+        value(row.expect("a row"), "degrees_out")
+    };
+    assert!((out(1.0, 1.5, 30.0) - 19.4712206344907).abs() < 1e-12);
+    assert!((out(1.0, 1.5, 60.0) - 35.2643896827547).abs() < 1e-12);
+    assert!(out(1.5, 1.0, 41.0) > 79.0 && out(1.5, 1.0, 42.0).is_nan());
+}
+
+/// 1.6, fig:ray-tree: each node's weight is its parent's times the share on the edge.
+#[test]
+fn ray_tree() {
+    let rows = rows(&made("1.6"));
+    assert!(rows.len() >= 8 && field(&rows[0], "kind") == "primary");
+    for row in &rows[1..] {
+        let parent = &rows[value(row, "parent") as usize];
+        assert_eq!(value(row, "depth"), value(parent, "depth") + 1.0);
+        assert!(value(row, "weight") < value(parent, "weight"));
+        let share = value(row, "weight") / value(parent, "weight");
+        let of_glass = if field(row, "kind") == "refracted" { 0.9 } else { 0.1 };
+        if field(parent, "end") == "glass" {
+            assert!((share - of_glass).abs() < 1e-12);
+        }
+    }
+    let ends: Vec<&str> = rows.iter().map(|row| field(row, "end")).collect();
+    for wanted in ["glass", "mirror", "plastic", "floor", "background", "cut"] {
+        assert!(ends.contains(&wanted), "no ray ends at {wanted}");
+    }
+}
+
+/// 1.7, algo:lr and eq:recursion: each bounce costs rays and leaves less error; the three colours at the
+/// limit cost the same.
+#[test]
+fn depth() {
+    let rows = rows(&made("1.7"));
+    let curve =
+        |name: &str| -> Vec<_> { rows.iter().filter(|row| field(row, "method") == name).collect() };
+    let (black, background) = (curve("black"), curve("background"));
+    for pair in black.windows(2) {
+        assert!(value(pair[1], "rays") > value(pair[0], "rays"));
+        assert!(value(pair[1], "mean_abs") < value(pair[0], "mean_abs"));
+    }
+    for (a, b) in black.iter().zip(&background) {
+        assert_eq!(field(a, "rays"), field(b, "rays"));
+        assert_eq!(field(a, "weight_left"), field(b, "weight_left"));
+    }
+}
+
+/// 1.11: a pixel's samples cost what they cost in any layout, and more samples err less in each.
+#[test]
+fn aliasing() {
+    let rows = rows(&made("1.11"));
+    for curve in rows.chunks(4) {
+        for pair in curve.windows(2) {
+            assert_eq!(value(&pair[1], "samples"), 4.0 * value(&pair[0], "samples"));
+            assert!(value(&pair[1], "RMSE") < value(&pair[0], "RMSE"));
+        }
+    }
+}

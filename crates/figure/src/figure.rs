@@ -1,0 +1,42 @@
+//! What a chapter hands over for each of its figures.
+
+use crate::data::Table;
+use crate::plate::Plate;
+
+/// How much work goes into a figure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effort {
+    /// Small pictures and few points, for tests.
+    Quick,
+    /// The size to be shown.
+    Full,
+}
+
+impl Effort {
+    /// One of two settings.
+    pub fn pick<T>(self, quick: T, full: T) -> T {
+        match self {
+            Self::Quick => quick,
+            Self::Full => full,
+        }
+    }
+}
+
+/// A figure of the course: a plate that a function makes, with the numbers behind it.
+#[derive(Clone, Copy, Debug)]
+pub struct Figure {
+    /// Its number, `1.7`.
+    pub id: &'static str,
+    /// Its short name, `depth`, which ends up in file names.
+    pub name: &'static str,
+    /// Makes it.
+    pub make: fn(Effort) -> Finished,
+}
+
+/// A figure that has been made.
+pub struct Finished {
+    /// What is shown.
+    pub plate: Plate,
+    /// The numbers behind it, one observation a row. Whatever the claim rests on is in here.
+    pub data: Table,
+}

@@ -1,0 +1,195 @@
+//! The one routine that measures speed against error.
+
+use std::time::Instant;
+
+use crate::chart::Spread;
+use crate::data::{Table, Value};
+use crate::shape::Color;
+use crate::speed_error::{CurvePoint, MethodCurve, SpeedError};
+
+/// A method at one setting of its knob, ready to be run.
+pub struct Contender<'a, T> {
+    /// The curve it belongs to: the name of the method, or of its variant.
+    pub label: String,
+    /// The curve's colour.
+    pub color: Color,
+    /// The setting, as written beside its point.
+    pub knob: String,
+    /// One run: its outcome and the counted work, both the same every time.
+    pub run: Box<dyn Fn() -> (T, u64) + 'a>,
+}
+
+/// One contender's measurements.
+#[derive(Clone, Debug, PartialEq)]
+struct Trial {
+    label: String,
+    color: Color,
+    knob: String,
+    seconds: Spread,
+    work: u64,
+    errors: Vec<(&'static str, f64)>,
+}
+
+/// How fast and how wrong several methods are, each at several settings.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Study {
+    work_unit: String,
+    trials: Vec<Trial>,
+}
+
+impl Study {
+    /// Measures: runs all contenders `runs` times in turn (A B C A B C), so that a machine that slows
+    /// down slows all of them, and judges each outcome by named errors, at least 0, against the
+    /// reference. Returns the outcomes as well, in the contenders' order.
+    ///
+    /// Contenders of one curve must follow each other in the knob's order; `work_unit` names the counted
+    /// work.
+    ///
+    /// # Panics
+    /// If `runs` is 0.
+    pub fn measure<T>(
+        work_unit: impl Into<String>,
+        runs: usize,
+        contenders: Vec<Contender<'_, T>>,
+        judge: impl Fn(&T) -> Vec<(&'static str, f64)>,
+    ) -> (Self, Vec<T>) {
+        let mut seconds = vec![Vec::new(); contenders.len()];
+        let mut outcomes = Vec::new();
+        for _ in 0..runs {
+            outcomes.clear();
+            for (contender, seconds) in contenders.iter().zip(&mut seconds) {
+                let start = Instant::now();
+                outcomes.push((contender.run)());
+                seconds.push(start.elapsed().as_secs_f64());
+            }
+        }
+        let trials = contenders.into_iter().zip(&outcomes).zip(&seconds).map(
+            |((contender, (outcome, work)), seconds)| Trial {
+                label: contender.label,
+                color: contender.color,
+                knob: contender.knob,
+                seconds: Spread::of_runs(seconds),
+                work: *work,
+                errors: judge(outcome),
+            },
+        );
+        let study = Self { work_unit: work_unit.into(), trials: trials.collect() };
+        (study, outcomes.into_iter().map(|(outcome, _)| outcome).collect())
+    }
+
+    fn trial(&self, label: &str, knob: &str) -> &Trial {
+        let found = self.trials.iter().find(|trial| trial.label == label && trial.knob == knob);
+        found.unwrap_or_else(|| panic!("no contender {label:?} at {knob:?}"))
+    }
+
+    /// The named error of one contender.
+    ///
+    /// # Panics
+    /// If there is no such contender or error: a figure asks for what it has measured.
+    pub fn error(&self, label: &str, knob: &str, name: &str) -> f64 {
+        self.trial(label, knob).error(name)
+    }
+
+    /// The counted work of one contender.
+    ///
+    /// # Panics
+    /// If there is no such contender.
+    pub fn work(&self, label: &str, knob: &str) -> u64 {
+        self.trial(label, knob).work
+    }
+
+    /// The seconds of one contender.
+    ///
+    /// # Panics
+    /// If there is no such contender.
+    pub fn seconds(&self, label: &str, knob: &str) -> Spread {
+        self.trial(label, knob).seconds
+    }
+
+    /// The chart of the error of that name.
+    ///
+    /// # Panics
+    /// If the errors have no such name.
+    pub fn chart(&self, error: &str) -> SpeedError {
+        let curves = self.trials.chunk_by(|a, b| a.label == b.label);
+        curves.fold(SpeedError::new(&self.work_unit, error), |chart, trials| {
+            chart.curve(MethodCurve {
+                label: trials[0].label.clone(),
+                color: trials[0].color,
+                points: trials.iter().map(|trial| trial.point(error)).collect(),
+            })
+        })
+    }
+
+    /// All measurements, one contender a row.
+    pub fn table(&self) -> Table {
+        let seconds = ["seconds_min", "seconds_median", "seconds_max"];
+        let errors = self.trials.first().map_or(&[][..], |trial| &trial.errors);
+        let columns = ["method", "knob", self.work_unit.as_str()].into_iter().chain(seconds);
+        let mut table = Table::new(columns.chain(errors.iter().map(|(name, _)| *name)));
+        for trial in &self.trials {
+            let Spread { low, mid, high } = trial.seconds;
+            let names = [trial.label.as_str(), &trial.knob].map(Value::from);
+            let numbers = [trial.work.into(), low.into(), mid.into(), high.into()];
+            let errors = trial.errors.iter().map(|(_, error)| Value::from(*error));
+            table.push(names.into_iter().chain(numbers).chain(errors));
+        }
+        table
+    }
+}
+
+impl Trial {
+    fn error(&self, name: &str) -> f64 {
+        let found = self.errors.iter().find(|(known, _)| *known == name);
+        found.unwrap_or_else(|| panic!("no error {name:?}")).1
+    }
+
+    fn point(&self, error: &str) -> CurvePoint {
+        CurvePoint {
+            knob: self.knob.clone(),
+            seconds: self.seconds,
+            work: self.work,
+            error: self.error(error),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::RefCell;
+
+    use super::*;
+    use crate::palette::category_color;
+
+    #[test]
+    fn contenders_run_in_turn_and_are_judged_by_their_outcome() {
+        let order = RefCell::new(String::new());
+        let contender = |label: &str, knob: u64, outcome: f64| Contender {
+            label: label.to_owned(),
+            color: category_color(0),
+            knob: knob.to_string(),
+            run: {
+                let (name, order) = (format!("{label}{knob} "), &order);
+                Box::new(move || {
+                    order.borrow_mut().push_str(&name);
+                    (outcome, 10 * knob)
+                })
+            },
+        };
+        let contenders =
+            vec![contender("a", 1, 3.0), contender("a", 2, 2.5), contender("b", 1, 2.0)];
+        let (study, outcomes) = Study::measure("tests", 3, contenders, |&outcome: &f64| {
+            vec![("error", outcome - 2.0), ("square", (outcome - 2.0).powi(2))]
+        });
+        assert_eq!(*order.borrow(), "a1 a2 b1 ".repeat(3));
+        assert_eq!(outcomes, [3.0, 2.5, 2.0]);
+        assert_eq!(study.error("a", "2", "square"), 0.25);
+        assert_eq!(study.work("b", "1"), 10);
+        let csv = study.table().to_csv();
+        let header = "method,knob,tests,seconds_min,seconds_median,seconds_max,error,square";
+        assert_eq!(csv.lines().next(), Some(header));
+        assert!(csv.lines().nth(2).is_some_and(|row| row.starts_with("a,2,20,")));
+        assert!(csv.lines().nth(2).is_some_and(|row| row.ends_with(",0.5,0.25")));
+        assert_eq!(csv.lines().count(), 4);
+    }
+}
