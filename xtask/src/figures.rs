@@ -1,6 +1,5 @@
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
@@ -55,7 +54,7 @@ pub fn run(args: &Args) -> Result<()> {
     let selected = select(&args.selection)?;
     if args.list {
         for (chapter, figure) in selected {
-            println!("{:<5} {:<14} {}", figure.id, figure.name, chapter.title);
+            say!("{:<5} {:<14} {}", figure.id, figure.name, chapter.title);
         }
         return Ok(());
     }
@@ -67,7 +66,7 @@ pub fn run(args: &Args) -> Result<()> {
     let mut entries = Vec::new();
     let mut failed = Vec::new();
     for (chapter, figure) in selected {
-        if progress::INTERRUPTED.load(Ordering::Relaxed) {
+        if progress::INTERRUPTED.load(std::sync::atomic::Ordering::Relaxed) {
             bail!("interrupted; the figures drawn so far are in {}", out.display());
         }
         bar.set_message(format!("{} {}", figure.id, figure.name));
@@ -80,9 +79,12 @@ pub fn run(args: &Args) -> Result<()> {
             }
         };
         bar.suspend(|| {
-            println!(
+            say!(
                 "{:<5} {:<14} {:5.1} s  {verdict}: {}",
-                figure.id, figure.name, entry.seconds, entry.claim
+                figure.id,
+                figure.name,
+                entry.seconds,
+                entry.claim
             );
         });
         bar.inc(1);
@@ -91,9 +93,9 @@ pub fn run(args: &Args) -> Result<()> {
     bar.finish_and_clear();
     let page = out.join("index.html");
     write_atomically(&page, index_html("Lancer: the plates", &entries).as_bytes())?;
-    println!("{} figures in {}", entries.len(), page.display());
+    say!("{} figures in {}", entries.len(), page.display());
     if !failed.is_empty() {
-        println!("claims that do not hold here: {}", failed.join(", "));
+        say!("claims that do not hold here: {}", failed.join(", "));
     }
     Ok(())
 }
