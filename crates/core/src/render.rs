@@ -69,7 +69,7 @@ impl Tile {
 /// Renders tile by tile: `fill` computes every pixel of the tile it is given.
 ///
 /// # Errors
-/// [`Cancelled`] if [`Control::cancelled`] was set before the last tile began.
+/// [`Cancelled`] if [`Control::cancelled`] was set before the last tile was done.
 pub fn render_tiles<C: AddAssign + Default + Send>(
     size: ImageSize,
     control: Control,
@@ -98,7 +98,8 @@ pub fn render_tiles<C: AddAssign + Default + Send>(
         .collect();
 
     let mut rendering = Rendering { image: Image::new(size), counts: C::default() };
-    for (tile, counts) in tiles.ok_or(Cancelled)? {
+    let tiles = tiles.filter(|_| !control.cancelled.load(Ordering::Relaxed)).ok_or(Cancelled)?;
+    for (tile, counts) in tiles {
         rendering.image.paste(tile.x, tile.y, tile.size, &tile.pixels);
         rendering.counts += counts;
     }
@@ -119,6 +120,10 @@ pub fn render_pixels<C: AddAssign + Default + Send>(
     render_tiles(size, control, |tile, counts| {
         for y in tile.y..tile.y + tile.size.height {
             for x in tile.x..tile.x + tile.size.width {
+                // A pixel of many samples may take long.
+                if control.cancelled.load(Ordering::Relaxed) {
+                    return;
+                }
                 let sum: Rgb = sampling.points(x, y).map(|film| radiance(film, counts)).sum();
                 tile.set(x, y, sum / f64::from(sampling.samples));
             }
