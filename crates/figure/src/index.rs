@@ -104,8 +104,7 @@ pub fn index_html(title: &str, entries: &[Entry]) -> String {
 fn figure(entry: &Entry) -> String {
     let [red, green, blue] = entry.verdict.color().rgb;
     let (id, title) = (escape(&entry.id), escape(&entry.title));
-    let links: Vec<String> =
-        entry.files.iter().map(|path| format!("<a href=\"{0}\">{0}</a>", escape(path))).collect();
+    let links: Vec<String> = entry.files.iter().map(|path| link(path)).collect();
     format!(
         "<figure id=\"{id}\">\n<button type=\"button\"><img loading=\"lazy\" alt=\"{id} {title}\" \
          src=\"data:image/png;base64,{}\"></button>\n<figcaption>\n<h3><span>{id}</span> {title}</h3>\n\
@@ -118,6 +117,12 @@ fn figure(entry: &Entry) -> String {
         escape(&entry.caption),
         links.join(" · "),
     )
+}
+
+/// A link that shows the file's name without its folders.
+fn link(path: &str) -> String {
+    let name = path.rsplit('/').next().unwrap_or(path);
+    format!("<a href=\"{}\">{}</a>", escape(path), escape(name))
 }
 
 #[cfg(test)]
@@ -142,7 +147,7 @@ mod tests {
         assert!(!html.contains("http"), "no address of another place");
         assert_eq!((html.matches("<h2>").count(), html.matches("<figure ").count()), (2, 3));
         assert!(html.contains("0 of 3 claims hold"));
-        assert!(html.contains("<a href=\"1/data.csv\">"));
+        assert!(html.contains("<a href=\"1/data.csv\">data.csv</a>"));
         assert!(html.contains("base64,AQID"));
     }
 }

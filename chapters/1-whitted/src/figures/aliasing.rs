@@ -133,8 +133,8 @@ pub fn make(effort: Effort) -> Finished {
     // Independent errors leave a quarter; the rest is the spread of a finite picture.
     let holds = regular > 0.99 && jittered < 0.3 && owen < 0.3;
     let claim = format!(
-        "With a sample per pixel a regular grid shows rings that are not there, in every picture anew: {:.0} \
-         % of its error is left in the mean of {PICTURES} pictures. Of jittered samples' error, noise, {:.0} % is.",
+        "With a sample per pixel a regular grid shows rings that are not there, the same in every picture: the \
+         mean of {PICTURES} keeps {:.0} % of the error. Jittered, the error is noise: the mean keeps {:.0} %.",
         100.0 * regular,
         100.0 * jittered
     );
