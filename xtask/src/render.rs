@@ -9,7 +9,7 @@ use lancer_accel::ObvhsBvh2;
 use lancer_core::Rgb;
 use lancer_core::image::{ImageSize, check_target, save};
 use lancer_core::intersector::{Intersector, LinearScan};
-use lancer_core::render::{Control, Rendering, render_pixels};
+use lancer_core::render::{Control, Rendering, render_adaptive, render_pixels};
 use lancer_core::sampling::{Pattern, PixelSampling};
 use lancer_core::scene::load::WarningKind;
 use lancer_core::scene::{PointLight, Scene};
@@ -31,6 +31,7 @@ const INDEXES: [&str; 2] = ["linear", "obvhs-bvh2"];
 #[command(after_help = "Examples:
   cargo xtask render whitted --out whitted.png
   cargo xtask render bunny.obj --method appel --size 1024x1024 --spp 16 --out bunny.png
+  cargo xtask render whitted --spp 16 --adaptive 0.02 --out smooth.png
   cargo xtask render room --depth 8 --eye 0.3,1.6,4 --exposure 0.5 --out room.exr")]
 pub struct Args {
     /// A .toml or .obj file, or a scene of the course
@@ -47,6 +48,10 @@ pub struct Args {
     /// Samples per pixel: 1 is the pixel's centre, more are a scrambled Sobol sequence
     #[arg(long, default_value_t = 1, value_parser = whole::<u32>(1, 1 << 20), allow_negative_numbers = true)]
     spp: u32,
+    /// Takes --spp samples only in pixels that differ from a neighbour by more than this part of the
+    /// display's range, and one in the others
+    #[arg(long, value_name = "CONTRAST", value_parser = part, allow_hyphen_values = true)]
+    adaptive: Option<f64>,
     /// Largest number of bounces between the eye and a surface (whitted)
     #[arg(long, default_value_t = 5, value_parser = whole::<u32>(0, 1000), allow_negative_numbers = true)]
     depth: u32,
@@ -95,6 +100,12 @@ impl<const N: usize> FromStr for Numbers<N> {
 fn finite(text: &str) -> Result<f64, String> {
     let number = text.trim().parse().ok().filter(|number: &f64| number.is_finite());
     number.ok_or_else(|| format!("`{text}` is not a number; write one such as -1.5"))
+}
+
+/// Reads a part of a whole.
+fn part(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse().ok().filter(|number| (0.0..=1.0).contains(number));
+    number.ok_or_else(|| "write a number from 0 to 1".to_owned())
 }
 
 /// Reads whole numbers in a range.
@@ -226,8 +237,11 @@ fn picture(
         ..Control::default()
     };
     let start = Instant::now();
-    let rendering = render_pixels(args.size, sampling, control, radiance)
-        .map_err(|_| anyhow!("interrupted; no file was written"));
+    let rendering = match args.adaptive {
+        Some(contrast) => render_adaptive(args.size, sampling, contrast, control, radiance),
+        None => render_pixels(args.size, sampling, control, radiance),
+    };
+    let rendering = rendering.map_err(|_| anyhow!("interrupted; no file was written"));
     let seconds = start.elapsed().as_secs_f64();
     bar.finish_and_clear();
     let rendering = rendering?;

@@ -94,6 +94,8 @@ fn wrong_options_are_refused_with_a_cure() {
         ["--spp", "0"],
         ["--spp", "-1"],
         ["--spp", "1e3"],
+        ["--adaptive", "2"],
+        ["--adaptive", "nan"],
         ["--depth", "-1"],
         ["--threads", "-1"],
         ["--threads", "70000"],
@@ -103,6 +105,8 @@ fn wrong_options_are_refused_with_a_cure() {
     error: invalid value '0' for '--spp <SPP>': write a whole number from 1 to 1048576
     error: invalid value '-1' for '--spp <SPP>': write a whole number from 1 to 1048576
     error: invalid value '1e3' for '--spp <SPP>': write a whole number from 1 to 1048576
+    error: invalid value '2' for '--adaptive <CONTRAST>': write a number from 0 to 1
+    error: invalid value 'nan' for '--adaptive <CONTRAST>': write a number from 0 to 1
     error: invalid value '-1' for '--depth <DEPTH>': write a whole number from 0 to 1000
     error: invalid value '-1' for '--threads <THREADS>': write a whole number from 0 to 1024
     error: invalid value '70000' for '--threads <THREADS>': write a whole number from 0 to 1024

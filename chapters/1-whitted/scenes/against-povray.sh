@@ -88,17 +88,20 @@ for ((run = 0; run < runs; run++)); do
   for spp in 2 4 8 16; do
     lancer "lancer-spp-$spp" --spp "$spp"
   done
+  for contrast in 0.1 0.05 0.02; do
+    lancer "lancer-adaptive-$contrast" --spp 16 --adaptive "$contrast"
+  done
 done
 # Two checks of the reference, once each: other samples of ours, and 9x9 rays in every pixel of
 # POV-Ray's. What error they have left is mostly that of 8 bits.
 lancer lancer-256 --spp 256 --seed 1
 pov_ray pov-9x9 +A0.0 +R9 +AM1 -J
-printf '%-22s  %8s  %13s  %9s  %6s  %8s\n' setting seconds 'min - max' RMSE PSNR FLIP
+printf '%-32s  %8s  %13s  %9s  %6s  %8s\n' setting seconds 'min - max' RMSE PSNR FLIP
 row() {
   local name=$1 setting=$2 median least most
   read -r median least most < <(seconds "$name")
   compare "$folder/reference.exr" "$folder/$name.png"
-  printf '%-22s  %8s  %13s  %9.6f  %6.2f  %8.6f\n' \
+  printf '%-32s  %8s  %13s  %9.6f  %6.2f  %8.6f\n' \
     "$setting" "$median" "$least - $most" "$(metric RMSE)" "$(metric PSNR)" "$(metric FLIP)"
 }
 row pov-1 'POV-Ray -A'
@@ -108,5 +111,8 @@ row pov-9x9 'POV-Ray +A0.0 +R9 +AM1'
 row lancer-1 'lancer  --spp 1'
 for spp in 2 4 8 16; do
   row "lancer-spp-$spp" "lancer  --spp $spp"
+done
+for contrast in 0.1 0.05 0.02; do
+  row "lancer-adaptive-$contrast" "lancer  --spp 16 --adaptive $contrast"
 done
 row lancer-256 'lancer  --spp 256'
