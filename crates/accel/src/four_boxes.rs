@@ -1,0 +1,142 @@
+use glam::{DVec3, Vec3A, Vec4};
+use lancer_core::geometry::{Bounds3, Ray};
+
+/// Four boxes in `f32`, laid out to be tested together: one lane each.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FourBoxes {
+    /// Per axis the lanes' smallest and largest coordinates.
+    planes: [[Vec4; 2]; 3],
+}
+
+impl FourBoxes {
+    /// Four boxes that no ray meets.
+    pub(crate) const EMPTY: Self = Self { planes: [[Vec4::INFINITY, Vec4::NEG_INFINITY]; 3] };
+
+    /// Puts a box, given by its smallest and largest coordinates, into a lane.
+    pub(crate) fn set(&mut self, lane: usize, [min, max]: [Vec3A; 2]) {
+        for (axis, planes) in self.planes.iter_mut().enumerate() {
+            planes[0][lane] = min[axis];
+            planes[1][lane] = max[axis];
+        }
+    }
+}
+
+/// Where the nodes' coordinates live: the scene's box, moved to the origin and scaled into [−1, 1]³.
+/// There `f32` neither overflows nor loses digits to the scene's position.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frame {
+    center: DVec3,
+    to_unit: f64,
+}
+
+impl Frame {
+    /// The frame of a scene within `bounds`.
+    pub(crate) fn of(bounds: Bounds3) -> Self {
+        if bounds.is_empty() {
+            return Self { center: DVec3::ZERO, to_unit: 1.0 };
+        }
+        let extent = (bounds.max - bounds.min).max_element() * 0.5;
+        let to_unit = if extent > 0.0 { extent.recip() } else { 1.0 };
+        Self { center: bounds.center(), to_unit }
+    }
+
+    /// A box in this frame, rounded outwards by more than the primitive test can err.
+    pub(crate) fn outwards(&self, bounds: Bounds3) -> [Vec3A; 2] {
+        let margin = f64::from(f32::EPSILON);
+        let unit = |p: DVec3| (p - self.center) * self.to_unit;
+        let min = (unit(bounds.min) - margin).as_vec3a().to_array().map(f32::next_down);
+        let max = (unit(bounds.max) + margin).as_vec3a().to_array().map(f32::next_up);
+        [min.into(), max.into()]
+    }
+}
+
+/// A ray prepared for conservative `f32` tests of [`FourBoxes`].
+///
+/// A slab is t = plane · inverse + offset. Rounding the origin and the direction to `f32`, the
+/// inverse and the two operations moves a plane by less than 8 u (1 + |origin|), u = 2⁻²⁴: the product
+/// errs by 3 u |plane|, the offset by 5 u |origin|, their sum by u (|plane| + |origin|), and |plane| is
+/// at most 1. The offsets carry that pad, near ones towards the origin and far ones away from it, so a
+/// box is entered too early or left too late, never missed. A direction component near 0 is replaced by
+/// a tiny one of its sign: then no 0 · ∞ = NaN can arise.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FourSlabs {
+    /// Per axis: the ray travels towards smaller coordinates.
+    negative: [bool; 3],
+    inverse: Vec3A,
+    near_offset: Vec3A,
+    far_offset: Vec3A,
+    /// The parameter in units of the boxes is `t · per_unit − skipped`.
+    per_unit: f64,
+    skipped: f64,
+}
+
+/// Components of a direction below this count as this; the largest is at least 2³⁰ times as long.
+const TINY: f32 = 1e-20;
+const PAD: f32 = 8.0 * 0.5 * f32::EPSILON;
+
+impl FourSlabs {
+    /// Prepares the tests of a ray.
+    #[inline]
+    pub(crate) fn new(ray: &Ray, frame: &Frame) -> Self {
+        let origin = (ray.origin - frame.center) * frame.to_unit;
+        let length_squared = ray.direction.length_squared();
+        if origin.length_squared() <= 16.0 && length_squared > 1e-18 && length_squared < 1e18 {
+            Self::prepare(origin, ray.direction, 0.0, frame.to_unit, 0.0)
+        } else {
+            Self::from_afar(origin, ray.direction, frame)
+        }
+    }
+
+    /// A direction of extreme length is scaled. An origin far outside would pad the boxes into
+    /// nothing: it moves close to the scene, and the rounding of that counts as well.
+    #[cold]
+    fn from_afar(origin: DVec3, direction: DVec3, frame: &Frame) -> Self {
+        let longest = direction.abs().max_element();
+        let direction = direction / longest;
+        let away = origin.length();
+        let skip = if away < 2.0 { 0.0 } else { (away - 2.0) / direction.length() };
+        let rounding = 8.0 * f64::EPSILON * away;
+        let origin = origin + skip * direction;
+        Self::prepare(origin, direction, rounding as f32, frame.to_unit * longest, skip)
+    }
+
+    #[inline(always)]
+    fn prepare(origin: DVec3, direction: DVec3, moved: f32, per_unit: f64, skipped: f64) -> Self {
+        let (origin, direction) = (origin.as_vec3a(), direction.as_vec3a());
+        let inverse = direction.abs().max(Vec3A::splat(TINY)).copysign(direction).recip();
+        let widen = ((origin.abs() + 1.0) * PAD + moved) * inverse.abs();
+        let offset = -origin * inverse;
+        let negative = direction.is_negative_bitmask();
+        Self {
+            negative: [0, 1, 2].map(|axis| negative & (1 << axis) != 0),
+            inverse,
+            near_offset: offset - widen,
+            far_offset: offset + widen,
+            // A parameter is rounded up when it becomes an `f32`.
+            per_unit: per_unit * (1.0 + f64::from(f32::EPSILON)),
+            skipped,
+        }
+    }
+
+    /// A parameter of the ray in the units of the boxes, rounded up if it is not before the boxes.
+    #[inline(always)]
+    pub(crate) fn parameter(&self, t: f64) -> f32 {
+        (t * self.per_unit - self.skipped) as f32
+    }
+
+    /// Entry parameters of the four boxes, and a mask of the lanes whose box the ray meets before
+    /// `max`.
+    #[inline(always)]
+    pub(crate) fn enter(&self, boxes: &FourBoxes, max: f32) -> (Vec4, u32) {
+        let (mut near, mut far) = (Vec4::ZERO, Vec4::splat(max));
+        for axis in 0..3 {
+            let negative = self.negative[axis];
+            let first = boxes.planes[axis][usize::from(negative)];
+            let last = boxes.planes[axis][usize::from(!negative)];
+            // In this order a NaN, of an invalid ray, is kept and ends as a miss.
+            near = near.max(first * self.inverse[axis] + self.near_offset[axis]);
+            far = far.min(last * self.inverse[axis] + self.far_offset[axis]);
+        }
+        (near, near.cmple(far).bitmask())
+    }
+}
