@@ -123,6 +123,24 @@ fn on_spheres_among_triangles() {
     let last = *scene.spheres.last().unwrap();
     scene.spheres.push(last);
     assert_agreement(&scene, DVec3::ZERO, 4_000);
+
+    // Along the silhouettes, where rounding decides between a hit and a miss.
+    let (oracle, index) = (LinearScan::new(&scene), ObvhsBvh2::build(&scene));
+    let mut hits = 0;
+    for _ in 0..20_000 {
+        let sphere = scene.spheres[random.below(scene.spheres.len())].shape;
+        let origin = 10.0_f64.powf(random.between(0.5, 3.0)) * random.direction();
+        let to_center = sphere.center - origin;
+        let aside = to_center.any_orthogonal_vector().normalize();
+        let sine = sphere.radius / to_center.length();
+        let off = 1.0 + random.between(-4.0, 4.0) * f64::EPSILON;
+        let rim = sphere.center + aside * (sphere.radius * off / (1.0 - sine * sine).sqrt());
+        let ray = Ray::new(origin, rim - origin);
+        let wanted = oracle.closest_hit(&ray, Interval::POSITIVE);
+        assert_eq!(index.closest_hit(&ray, Interval::POSITIVE), wanted, "{ray:?}");
+        hits += usize::from(wanted.is_some());
+    }
+    assert!(hits > 5_000, "{hits}");
 }
 
 #[test]

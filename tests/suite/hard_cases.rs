@@ -1,6 +1,7 @@
 //! One triangle and the inputs that break triangle tests, each with the answer to demand.
 
-use glam::DVec3;
+use chapter_1::naive::signs_only;
+use glam::{DVec2, DVec3};
 use lancer_core::geometry::{Ray, Shear, TriangleHit, intersect_triangle};
 
 use crate::random::Random;
@@ -84,19 +85,31 @@ fn extreme_sizes_and_distances_are_met() {
 }
 
 /// A ray in the plane of a triangle but beside it. The edge functions are rounding noise that may agree
-/// in sign; without the range rule a few of these are reported as hits.
+/// in sign; without the range rule some of these are reported as hits. Corners and rays are integer
+/// combinations of two integer vectors, so that they lie in one plane exactly.
 #[test]
 fn edge_on_rays_beside_a_triangle_are_missed() {
     let mut random = Random::new(7);
-    for _ in 0..200_000 {
-        let corners = [random.in_cube(1.0), random.in_cube(1.0), random.in_cube(1.0)];
-        let [a, b, c] = corners;
-        // Along the line from a through b and beyond, starting beyond b.
-        let origin = b + random.between(0.5, 2.0) * (b - a);
-        let beyond = origin + random.between(0.5, 2.0) * (b - a);
-        let got = hit(corners, origin, beyond - origin);
-        assert_eq!(got, None, "{a} {b} {c}");
+    let (mut tested, mut naive) = (0, 0);
+    while tested < 200_000 {
+        let mut vector = || v(random.integer(999), random.integer(999), random.integer(999));
+        let (p, q) = (vector(), vector());
+        let mut combination = || DVec2::new(random.integer(9), random.integer(9));
+        let corners = [combination(), combination(), combination()];
+        let (origin, direction) = (combination(), combination());
+        let sides = corners.map(|corner| direction.perp_dot(corner - origin));
+        let beside = sides.iter().all(|&side| side > 0.0) || sides.iter().all(|&side| side < 0.0);
+        if !beside || p.cross(q) == DVec3::ZERO {
+            continue;
+        }
+        let in_space = |c: DVec2| c.x * p + c.y * q;
+        let (corners, ray) =
+            (corners.map(in_space), Ray::new(in_space(origin), in_space(direction)));
+        assert_eq!(hit(corners, ray.origin, ray.direction), None, "{corners:?} {ray:?}");
+        naive += usize::from(signs_only(corners, &ray));
+        tested += 1;
     }
+    assert!(naive > 0, "the signs of the edge functions alone do as well");
 }
 
 /// Random bits as coordinates: nothing panics, and every reported hit is a number.

@@ -198,7 +198,7 @@ fn no_ray_that_leaves_a_tessellated_plane_meets_it_again() {
 }
 
 #[test]
-fn nothing_passes_between_plates_a_millionth_apart() {
+fn nothing_passes_between_plates_a_millionth_of_their_distance_apart() {
     for distance in [0.0, 1.0, 1e3] {
         let gap = 1e-6 * (1.0 + distance);
         let offset = DVec3::splat(distance);

@@ -19,8 +19,26 @@ use lancer_whitted::{Appel, RayCounts, Settings, Whitted};
 use crate::names::choose;
 use crate::{progress, scene};
 
-const METHODS: [&str; 2] = ["appel", "whitted"];
-const INDEXES: [&str; 2] = ["linear", "obvhs-bvh2"];
+#[derive(Clone, Copy)]
+enum Method {
+    Appel,
+    Whitted,
+}
+
+#[derive(Clone, Copy)]
+enum Index {
+    Linear,
+    ObvhsBvh2,
+}
+
+const METHODS: [(&str, Method); 2] = [("appel", Method::Appel), ("whitted", Method::Whitted)];
+const INDEXES: [(&str, Index); 2] = [("linear", Index::Linear), ("obvhs-bvh2", Index::ObvhsBvh2)];
+
+/// The entry of that name in a table of a `kind` of thing.
+fn named<T: Copy>(kind: &str, given: &str, table: &[(&str, T)]) -> Result<T> {
+    let names: Vec<&str> = table.iter().map(|(name, _)| *name).collect();
+    Ok(table[choose(kind, given, &names)?].1)
+}
 
 /// Renders a scene by any method of the course.
 ///
@@ -70,7 +88,7 @@ pub struct Args {
     /// Vertical opening angle in degrees
     #[arg(long, value_name = "DEG", value_parser = finite, allow_hyphen_values = true)]
     fov: Option<f64>,
-    /// A point light instead of the scene's own; may be given several times
+    /// A point light instead of the scene's point lights; may be given several times
     #[arg(long, value_name = "X,Y,Z,INTENSITY", allow_hyphen_values = true)]
     light: Vec<Numbers<4>>,
     /// Brightens a PNG by this many stops; an EXR keeps the radiances
@@ -120,8 +138,8 @@ fn whole<T: FromStr + PartialOrd + Copy + Display>(
 }
 
 pub fn run(args: &Args) -> Result<()> {
-    let method = METHODS[choose("method", &args.method, &METHODS)?];
-    let index = INDEXES[choose("index", &args.index, &INDEXES)?];
+    let method = named("method", &args.method, &METHODS)?;
+    let index = named("index", &args.index, &INDEXES)?;
     check_target(&args.out).context("--out")?;
     progress::watch_for_interrupt()?;
 
@@ -134,7 +152,7 @@ pub fn run(args: &Args) -> Result<()> {
         }
     }
     let mut scene = loaded.scene;
-    place(&mut scene, args)?;
+    place(&mut scene, loaded.headlight, args)?;
     let counts = scene.counts();
     say!(
         "scene   {:7.3} s   {} triangles in {} faces, {} spheres, {} lights",
@@ -150,12 +168,12 @@ pub fn run(args: &Args) -> Result<()> {
         .build()
         .context("cannot start the threads")?;
     let rendering = pool.install(|| match index {
-        "linear" => trace(method, &scene, &LinearScan::new(&scene), args),
-        _ => {
+        Index::Linear => trace(method, &scene, &LinearScan::new(&scene), args),
+        Index::ObvhsBvh2 => {
             let start = Instant::now();
             let tree = ObvhsBvh2::build(&scene);
             let mib = tree.memory() as f64 / f64::from(1 << 20);
-            say!("index   {:7.3} s   {index}, {mib:.1} MiB", start.elapsed().as_secs_f64());
+            say!("index   {:7.3} s   {}, {mib:.1} MiB", start.elapsed().as_secs_f64(), args.index);
             trace(method, &scene, &tree, args)
         }
     })?;
@@ -174,7 +192,7 @@ pub fn run(args: &Args) -> Result<()> {
 }
 
 /// Applies the camera and the lights of the command line.
-fn place(scene: &mut Scene, args: &Args) -> Result<()> {
+fn place(scene: &mut Scene, headlight: bool, args: &Args) -> Result<()> {
     let point = |numbers: Numbers<3>| DVec3::from(numbers.0);
     if let Some(eye) = args.eye {
         scene.camera.eye = point(eye);
@@ -186,6 +204,9 @@ fn place(scene: &mut Scene, args: &Args) -> Result<()> {
         scene.camera.fov = fov;
     }
     scene.camera.check().context("--eye, --look-at, --fov")?;
+    if headlight {
+        scene.lights = vec![PointLight::beside(&scene.camera)];
+    }
     if !args.light.is_empty() {
         scene.lights = args
             .light
@@ -204,7 +225,7 @@ fn place(scene: &mut Scene, args: &Args) -> Result<()> {
 }
 
 fn trace(
-    method: &str,
+    method: Method,
     scene: &Scene,
     index: &dyn Intersector,
     args: &Args,
@@ -212,11 +233,11 @@ fn trace(
     let world = World { scene, index };
     let rays = scene.camera.primary_rays(args.size);
     match method {
-        "appel" => {
+        Method::Appel => {
             let appel = Appel::new(world);
             picture(args, |film, counts| appel.trace(&rays.through(film.x, film.y), counts))
         }
-        _ => {
+        Method::Whitted => {
             let settings = Settings { max_depth: args.depth, ..Settings::default() };
             let whitted = Whitted::new(world, settings);
             picture(args, |film, counts| whitted.trace(&rays.through(film.x, film.y), counts))

@@ -13,16 +13,16 @@ use crate::names::choose;
 /// # Errors
 /// As the loader; for what is neither a file nor a known name, the known names.
 pub fn open(scene: &str) -> Result<Loaded> {
-    let path = Path::new(scene);
-    if path.extension().is_some() || path.exists() {
-        return Ok(load(path)?);
-    }
     let (name, level) = match scene.split_once(':') {
         Some((name, level)) => (name, Some(level)),
         None => (scene, None),
     };
     let known: Vec<&str> = chapter_1::scenes::NAMES.to_vec();
     let chosen = choose("scene", name, &known);
+    let path = Path::new(scene);
+    if chosen.is_err() && (path.extension().is_some() || path.exists()) {
+        return Ok(load(path)?);
+    }
     let name = known[chosen.map_err(|error| anyhow!("{error}; or name a .toml or .obj file"))?];
     chapter_1::scenes::open(name, level)
 }

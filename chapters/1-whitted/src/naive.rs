@@ -21,6 +21,16 @@ pub fn moeller_trumbore([a, b, c]: [DVec3; 3], ray: &Ray) -> bool {
 /// Whether a ray meets a triangle by the watertight test with its edge functions rounded once, by a
 /// fused multiply-add, instead of twice: more accurate, and no longer antisymmetric.
 pub fn fused_edges(corners: [DVec3; 3], ray: &Ray) -> bool {
+    by_signs(corners, ray, |p, q| p[0].mul_add(q[1], -(p[1] * q[0])))
+}
+
+/// Whether a ray meets a triangle by the signs of the edge functions alone: a ray in the triangle's plane
+/// but beside it is sometimes taken for a hit.
+pub fn signs_only(corners: [DVec3; 3], ray: &Ray) -> bool {
+    by_signs(corners, ray, |p, q| p[0] * q[1] - p[1] * q[0])
+}
+
+fn by_signs(corners: [DVec3; 3], ray: &Ray, edge: impl Fn([f64; 3], [f64; 3]) -> f64) -> bool {
     let d = ray.direction.abs();
     let z = if d.x > d.y && d.x > d.z {
         0
@@ -35,7 +45,6 @@ pub fn fused_edges(corners: [DVec3; 3], ray: &Ray) -> bool {
         let v = corner - ray.origin;
         [v[x] - sx * v[z], v[y] - sy * v[z], v[z] / ray.direction[z]]
     });
-    let edge = |p: [f64; 3], q: [f64; 3]| p[0].mul_add(q[1], -(p[1] * q[0]));
     let (u, v, w) = (edge(c, b), edge(a, c), edge(b, a));
     let det = u + v + w;
     let mixed = (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0);

@@ -113,6 +113,7 @@ impl Generated {
         (self.fill)(scene, level);
         scene.camera = Camera::framing(scene.bounding_sphere().context("an empty scene")?);
         scene.lights.push(PointLight::beside(&scene.camera));
+        loaded.headlight = true;
         Ok(loaded)
     }
 }

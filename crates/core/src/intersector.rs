@@ -172,7 +172,8 @@ impl Scene {
         (0..(self.mesh.triangles.len() + self.spheres.len()) as u32).map(PrimitiveId)
     }
 
-    /// The smallest box around one primitive.
+    /// The smallest box around one primitive, up to the rounding of a sphere's extent. A hit may lie
+    /// beside it by the rounding of the ray: indexes widen their boxes by that much.
     pub fn primitive_bounds(&self, primitive: PrimitiveId) -> Bounds3 {
         let index = primitive.0 as usize;
         let triangles = self.mesh.triangles.len();

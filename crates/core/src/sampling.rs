@@ -80,9 +80,7 @@ fn owen(index: u32, key: u64) -> DVec2 {
 /// A well-mixed key for each (seed, pixel): the finaliser of SplitMix64 (Steele, Lea, Flood 2014).
 fn pixel_key(seed: u64, x: u32, y: u32) -> u64 {
     let pixel = (u64::from(y) << 32) | u64::from(x);
-    let mut z = mix(seed).wrapping_add(pixel.wrapping_mul(0x9e37_79b9_7f4a_7c15));
-    z = mix(z);
-    z
+    mix(mix(seed).wrapping_add(pixel.wrapping_mul(0x9e37_79b9_7f4a_7c15)))
 }
 
 fn mix(mut z: u64) -> u64 {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::Rgb;
-use crate::geometry::{Ray, gamma, leave_surface};
+use crate::geometry::{Bounds3, Ray, gamma, leave_surface};
 use crate::intersector::{Hit, Intersector};
 use crate::optics::reflect;
 use crate::scene::{Material, MaterialId, Scene};
@@ -12,6 +12,8 @@ use crate::scene::{Material, MaterialId, Scene};
 const POSITION: u32 = 7;
 /// The same from a sphere to a point of it, and back to the sign of |o − c|² − r² there.
 const SPHERE: u32 = 12;
+/// Rounded operations behind the end of a shadow ray, with room for its test against the face there.
+const SHADOW_END: u32 = 256;
 /// Rounded operations of [`leave_surface`] itself.
 const LEAVING: u32 = 4;
 
@@ -35,7 +37,7 @@ pub struct SurfacePoint {
     pub geometric_normal: DVec3,
     /// Unit normal for shading, on the same side: interpolated over smooth triangles.
     pub shading_normal: DVec3,
-    /// Where shadow rays start: `position`, lifted onto the surface that the vertex normals suggest,
+    /// Where shadow rays start on the outside: `position`, lifted onto the surface that the vertex normals suggest,
     /// so that the facets of a smooth mesh do not shade each other at the terminator.
     pub lifted: DVec3,
     /// What the surface is made of.
@@ -49,7 +51,7 @@ impl Scene {
         let index = hit.primitive.0 as usize;
         let triangles = self.mesh.triangles.len();
         if index < triangles {
-            self.triangle_surface(index, hit.barycentric)
+            self.triangle_surface(index, hit.barycentric, ray.direction)
         } else {
             self.sphere_surface(index - triangles, ray.at(hit.t))
         }
@@ -62,12 +64,14 @@ impl Scene {
     }
 
     #[inline]
-    fn triangle_surface(&self, index: usize, weights: DVec3) -> SurfacePoint {
+    fn triangle_surface(&self, index: usize, weights: DVec3, incident: DVec3) -> SurfacePoint {
         let corners = self.mesh.corners(index);
         // From the corners rather than the ray: the error does not grow with the distance travelled.
         let [a, b, c] = [weights.x * corners[0], weights.y * corners[1], weights.z * corners[2]];
         let position = a + b + c;
-        let geometric_normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize();
+        let area = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+        // A triangle of no area, which sews a seam, faces whoever meets it.
+        let geometric_normal = area.try_normalize().unwrap_or_else(|| -incident.normalize());
         let face = self.mesh.triangles[index].face;
         let flat = SurfacePoint {
             position,
@@ -161,8 +165,11 @@ impl SurfacePoint {
     /// The ray from the surface to `target`, which it reaches at t = 1.
     #[inline]
     pub fn spawn_to(&self, target: DVec3) -> Ray {
-        let towards = target - self.lifted;
-        let origin = leave_surface(self.lifted, self.error, self.geometric_normal, towards);
+        // Seen from inside a smooth surface is hollow: its facets stand before it, not behind. Near the
+        // terminator the shading normal tells the side, since the facet has turned away already.
+        let outwards = (target - self.position).dot(self.shading_normal) > 0.0;
+        let start = if outwards { self.lifted } else { self.position };
+        let origin = leave_surface(start, self.error, self.geometric_normal, target - start);
         Ray::new(origin, target - origin)
     }
 }
@@ -194,7 +201,8 @@ impl Scene {
     ///
     /// A face of area A and radiance L becomes a source of intensity L·A·cos θ at its centroid: the
     /// same power π·L·A with the same cosine, so that only its size, the penumbra, is lost. It stands
-    /// off the face by the centroid's rounding error, on the side it shines to.
+    /// off the face, on the side it shines to, by more than a shadow ray from anywhere in the scene can
+    /// err at its end.
     pub fn point_sources(&self) -> Vec<PointSource> {
         let points = self.lights.iter().map(|light| PointSource {
             position: light.position,
@@ -209,6 +217,9 @@ impl Scene {
         let emits = |face: &crate::scene::Face| self.material(face.material).emits();
         let any = self.materials.iter().any(Material::emits);
         let groups = if any { mesh.triangles.as_slice() } else { &[] };
+        // The largest coordinate bounds the rounding of a ray's end and of the face there.
+        let bounds = if any { self.bounds() } else { Bounds3::EMPTY };
+        let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
         let mut first = 0;
         groups
             .chunk_by(|a, b| a.face == b.face)
@@ -218,7 +229,7 @@ impl Scene {
                 (mesh.faces[group[0].face.0 as usize], range)
             })
             .filter(move |(face, _)| emits(face))
-            .filter_map(|(face, triangles)| {
+            .filter_map(move |(face, triangles)| {
                 let (mut area_vector, mut moment, mut area) = (DVec3::ZERO, DVec3::ZERO, 0.0);
                 for index in triangles {
                     let [a, b, c] = mesh.corners(index);
@@ -229,9 +240,8 @@ impl Scene {
                 }
                 let n = area_vector.try_normalize()?;
                 let centroid = moment / area;
-                let error = gamma(16) * centroid.abs();
                 Some(PointSource {
-                    position: leave_surface(centroid, error, n, n),
+                    position: centroid + gamma(SHADOW_END) * reach * n,
                     intensity: self.material(face.material).emission * area,
                     facing: Some(n),
                 })

@@ -50,7 +50,10 @@ impl<'a> Lighting<'a> {
         let reflectance =
             Reflectance { diffuse, specular: material.rho_s, shininess: material.shininess };
 
-        let mut radiance = material.emission + ambient(diffuse, scene.ambient);
+        let mut radiance = ambient(diffuse, scene.ambient);
+        if surface.geometric_normal.dot(to_eye) > 0.0 {
+            radiance += material.emission;
+        }
         if diffuse != Rgb::ZERO || material.rho_s != Rgb::ZERO {
             for source in &self.sources {
                 let shadow_ray = surface.spawn_to(source.position);

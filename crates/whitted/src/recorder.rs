@@ -24,7 +24,8 @@ pub struct Call {
     pub ray: Ray,
     /// 0 for a primary ray, one more per bounce.
     pub depth: u32,
-    /// The product of the k_s and k_t on the way here, of the strongest channel.
+    /// The product of the k_s and k_t on the way here, each of its strongest channel: the most that the
+    /// answer can count in any channel.
     pub weight: f64,
     /// Why the ray is traced.
     pub kind: RayKind,

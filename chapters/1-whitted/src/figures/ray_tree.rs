@@ -99,8 +99,8 @@ fn summed_up(scene: &Scene, tree: &RayTree, k: usize) -> Rgb {
     let RayEnd::Surface { hit, local, .. } = node.end else { return node.radiance };
     let material = scene.material(scene.surface_at(&node.call.ray, &hit).material);
     let child = |kind: RayKind| {
-        let is_child = |&k: &usize| {
-            tree.nodes[k].parent == Some(node_index(tree, node)) && tree.nodes[k].call.kind == kind
+        let is_child = |&child: &usize| {
+            tree.nodes[child].parent == Some(k) && tree.nodes[child].call.kind == kind
         };
         (0..tree.nodes.len()).find(is_child)
     };
@@ -110,10 +110,6 @@ fn summed_up(scene: &Scene, tree: &RayTree, k: usize) -> Rgb {
     // Total reflection gives both shares to the mirror.
     let k_s = if refracted.is_none() { material.k_s + material.k_t } else { material.k_s };
     recursion(local, k_s, below(mirror), material.k_t, below(refracted))
-}
-
-fn node_index(tree: &RayTree, node: &RayNode) -> usize {
-    tree.nodes.iter().position(|other| std::ptr::eq(other, node)).unwrap_or_default()
 }
 
 fn kind(kind: RayKind) -> (&'static str, Color) {

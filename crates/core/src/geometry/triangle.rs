@@ -76,7 +76,7 @@ pub struct TriangleHit {
 /// may agree by chance, so a hit must also lie in the range of the sheared corners.
 ///
 /// Hits with `t` below their own error bound are dropped: they cannot be told from the origin. That
-/// bound (Pharr, Jakob, Humphreys, *Physically Based Rendering*, 4th ed., §6.8.6, with the shear's own term
+/// bound (Pharr, Jakob, Humphreys, *Physically Based Rendering*, 4th ed., §6.8.7, with the shear's own term
 /// kept apart) is what lets rays leave a surface without a global epsilon; see [`super::leave_surface`].
 #[doc(alias = "eq:ray-triangle")]
 #[inline]

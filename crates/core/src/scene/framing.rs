@@ -3,6 +3,7 @@ use std::fmt;
 
 use glam::DVec3;
 
+use super::load::MAX_COORDINATE;
 use super::{Camera, PointLight, Scene};
 use crate::Rgb;
 use crate::geometry::Sphere;
@@ -36,7 +37,7 @@ impl Scene {
 /// Why a [`Camera`] cannot make a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CameraError {
-    /// A coordinate is NaN or infinite.
+    /// A coordinate is NaN or beyond [`MAX_COORDINATE`].
     NotFinite,
     /// The eye is the point looked at.
     NoDirection,
@@ -49,7 +50,9 @@ pub enum CameraError {
 impl CameraError {
     pub(super) fn problem_and_cure(self) -> (&'static str, &'static str) {
         match self {
-            Self::NotFinite => ("the camera is not finite", "correct its coordinates"),
+            Self::NotFinite => {
+                ("the camera is not finite or too far away", "use coordinates up to 1e50")
+            }
             Self::NoDirection => ("look_at is the same point as eye", "move one of the two"),
             Self::UpAlongView => {
                 ("up is zero or along the line of sight", "look another way or choose another `up`")
@@ -76,7 +79,8 @@ impl Camera {
     pub fn check(&self) -> Result<(), CameraError> {
         let view = self.look_at - self.eye;
         let across = view.cross(self.up).length();
-        if !(self.eye.is_finite() && self.look_at.is_finite() && self.up.is_finite()) {
+        let is_in_space = |v: DVec3| v.abs().max_element() <= MAX_COORDINATE;
+        if !(is_in_space(self.eye) && is_in_space(self.look_at) && is_in_space(self.up)) {
             Err(CameraError::NotFinite)
         } else if view == DVec3::ZERO {
             Err(CameraError::NoDirection)

@@ -31,7 +31,7 @@ pub struct Material {
     pub k_t: Rgb,
     /// Refractive index of the inside; the outside is 1.
     pub refractive_index: f64,
-    /// Emitted radiance. A face that emits is an area light.
+    /// Radiance emitted from the outside. A face that emits is an area light.
     pub emission: Rgb,
 }
 

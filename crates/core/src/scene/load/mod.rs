@@ -45,6 +45,9 @@ pub struct Loaded {
     pub scene: Scene,
     /// What was ignored, replaced or looks wrong, one entry per file and kind.
     pub warnings: Vec<Warning>,
+    /// The file has no light: the scene's only one was put beside the camera, and belongs there when
+    /// the camera is moved.
+    pub headlight: bool,
 }
 
 /// Reads a scene; the extension decides how.
@@ -121,10 +124,11 @@ fn load_obj(path: &Path, open: Open<'_>) -> Result<Loaded, LoadError> {
     scene.ambient = Rgb::splat(0.05);
     scene.background = Rgb::new(0.2, 0.25, 0.3);
     frame(&mut scene, &path.display().to_string())?;
-    if !scene.has_area_light() {
+    let headlight = !scene.has_area_light();
+    if headlight {
         scene.lights.push(PointLight::beside(&scene.camera));
     }
-    Ok(finish(scene, warnings))
+    Ok(Loaded { headlight, ..finish(scene, warnings) })
 }
 
 /// A scene to be filled; its camera has no meaning yet.
@@ -151,7 +155,7 @@ fn frame(scene: &mut Scene, file: &str) -> Result<(), LoadError> {
 }
 
 fn finish(scene: Scene, warnings: Warnings) -> Loaded {
-    Loaded { scene, warnings: warnings.into_vec() }
+    Loaded { scene, warnings: warnings.into_vec(), headlight: false }
 }
 
 const DEFAULT_GREY: Rgb = Rgb::splat(0.75);

@@ -219,7 +219,7 @@ impl Definition {
     /// `d` mixes the surface with what is behind it: every other term is multiplied by d and, up to
     /// `illum` 5, k_t is (1 − d) Tf with index 1, since only 6 and 7 refract and exporters write
     /// `Ni` everywhere. Glass keeps its highlight and mirror at full strength. The Fresnel factors
-    /// of 5 and 7 are left to the methods. `Ka` is not read: the course's ambient term is ρ̄ I_a.
+    /// of 5 and 7 are left out. `Ka` is not read: the course's ambient term is ρ̄ I_a.
     /// Without `illum` a material is of kind 2; without `Kd` it is light grey, without `Ns` its
     /// exponent is 1.
     fn material(&self) -> Material {
