@@ -3,12 +3,12 @@
 use std::ops::AddAssign;
 
 use lancer_core::image::{Image, ImageSize};
-use lancer_core::metric::{absolute_error_map, compare};
+use lancer_core::metric::{absolute_error_map, compare, rmse};
 use lancer_core::sampling::PixelSampling;
 use lancer_core::scene::Scene;
 use lancer_figure::{
-    Axis, Chart, Contender, Effort, Finished, Montage, Plate, Row, Series, Study, Tile,
-    category_color, method_color, number,
+    Axis, Chart, Color, Contender, Effort, Finished, HeatScale, Montage, Plate, Row, Series, Study,
+    Tile, category_color, method_color, number,
 };
 use lancer_whitted::{AtLimit, Call, RayCounts, Recorder, Settings};
 
@@ -45,6 +45,8 @@ impl AddAssign for WeightLeft {
 
 const LIMITS: [(AtLimit, &str); 3] =
     [(AtLimit::Black, "black"), (AtLimit::Ambient, "ambient"), (AtLimit::Background, "background")];
+const COLORS: [fn() -> Color; 3] =
+    [|| method_color("whitted"), || category_color(1), || category_color(2)];
 const REFERENCE_DEPTH: u32 = 14;
 const DEPTHS: [u32; 9] = [0, 1, 2, 3, 4, 5, 6, 8, 10];
 
@@ -55,7 +57,10 @@ pub fn make(effort: Effort) -> Finished {
     let unlimited = |max_depth| Settings { max_depth, min_weight: 0.0, at_limit: AtLimit::Black };
     let reference = render(unlimited(REFERENCE_DEPTH));
     let pixels = size.pixels() as f64;
-    let residual = reference.1.weight / pixels;
+    // What two more bounces change, and the rounding to f32 of values below 1.
+    let deeper = render(unlimited(REFERENCE_DEPTH + 2));
+    let rounding = f64::from(f32::EPSILON) / 48.0_f64.sqrt();
+    let residual = rmse(&deeper.0, &reference.0).expect("pictures of one size") + rounding;
 
     let contenders = LIMITS
         .iter()
@@ -63,7 +68,7 @@ pub fn make(effort: Effort) -> Finished {
         .flat_map(|(k, &(at_limit, name))| {
             DEPTHS.map(|max_depth| Contender {
                 label: name.to_owned(),
-                color: [method_color("whitted"), category_color(1), category_color(2)][k],
+                color: COLORS[k](),
                 knob: max_depth.to_string(),
                 run: Box::new(move || {
                     let (image, counts) = render(Settings { at_limit, ..unlimited(max_depth) });
@@ -92,12 +97,14 @@ pub fn make(effort: Effort) -> Finished {
     let ratios: Vec<f64> = measured.iter().map(|&depth| lost(depth)).collect();
     let least = ratios.iter().copied().fold(f64::INFINITY, f64::min);
     let most = ratios.iter().copied().fold(0.0, f64::max);
-    let fall = study.error("black", "1", "mean_abs") / study.error("black", "8", "mean_abs");
-    let holds = most / least < 3.0 && fall > 50.0;
+    let fall = |name: &str| study.error("black", "1", name) / study.error("black", "8", name);
+    let (error_fall, weight_fall) = (fall("mean_abs"), fall("weight_left"));
+    let holds = most / least < 2.0 && error_fall.min(weight_fall) > 1000.0;
     let claim = format!(
-        "The error follows the weight that each bounce leaves: from depth 1 to 8 both fall by a factor of \
-         {}, and the light lost per weight stays between {least:.2} and {most:.2}.",
-        number(fall)
+        "The error follows the weight that each bounce leaves: from depth 1 to 8 the weight falls {}-fold, \
+         the error {}-fold, and the light lost per weight stays between {least:.2} and {most:.2}.",
+        number(weight_fall),
+        number(error_fall)
     );
 
     let mut montage = Montage::new().columns(5);
@@ -110,6 +117,21 @@ pub fn make(effort: Effort) -> Finished {
             Tile::new(format!("depth {depth}"), shown(&outcomes[k].0))
                 .subtitle(format!("{rays:.1} rays/pixel, RMSE {}", number(error)))
                 .color(method_color("whitted")),
+        );
+    }
+    let scale = HeatScale::log("|error|", 1e-4, 1.0);
+    let mut at_depth_3 = Montage::new().color_bar(&scale);
+    for (k, (_, name)) in LIMITS.iter().enumerate() {
+        let depth_3 = DEPTHS.len() * k + 3;
+        let errors = absolute_error_map(&reference.0, &outcomes[depth_3].0);
+        let errors = errors.expect("pictures of one size");
+        at_depth_3 = at_depth_3.tile(
+            Tile::new(
+                format!("error at depth 3, {name}"),
+                scale.paint(size.width, size.height, &errors),
+            )
+            .subtitle(format!("RMSE {}", number(study.error(name, "3", "RMSE"))))
+            .color(COLORS[k]()),
         );
     }
     let mut bounces = Chart::new(Axis::linear("depth limit, Max_Prof"), Axis::log("per pixel"))
@@ -129,6 +151,7 @@ pub fn make(effort: Effort) -> Finished {
     };
     let plate = Plate::new("1.7", "How deep to follow the rays", claim, holds)
         .panel(montage)
+        .panel(at_depth_3)
         .panel(study.chart("RMSE").reference_error(residual))
         .panel(Row::new().panel(1.0, bounces))
         .note("« choix discutable »", format!(
@@ -139,9 +162,9 @@ pub fn make(effort: Effort) -> Finished {
         .note("Method", "algo:lr, eq:recursion; the work counts all rays, shadow rays included")
         .note("Settings", format!("scene whitted, {size}, 1 sample per pixel, no minimum weight"))
         .note("Reference", format!(
-            "algo:lr to depth {REFERENCE_DEPTH}; the weight it leaves, {} per pixel, bounds its own error \
-                 per unit of radiance",
-                number(residual)
+            "algo:lr to depth {REFERENCE_DEPTH}; two more bounces and the rounding to 32 bits change it by an \
+             RMSE of {}",
+            number(residual)
         ));
     Finished { plate, data: study.table() }
 }

@@ -1,18 +1,19 @@
 //! 1.2: the picture built up term by term, and the terms' sum against the picture.
 
-use glam::DVec2;
+use glam::DVec3;
 use lancer_accel::ObvhsBvh2;
 use lancer_core::Rgb;
-use lancer_core::geometry::Interval;
+use lancer_core::geometry::{Interval, Ray};
 use lancer_core::illumination::{Reflectance, ambient, attenuation, local};
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::intersector::Intersector;
+use lancer_core::optics::{reflect, refract};
 use lancer_core::scene::Scene;
 use lancer_core::world::{PointSource, World};
 use lancer_figure::{
     BarChart, Effort, Finished, Montage, Plate, Row, Table, Tile, category_color, number,
 };
-use lancer_whitted::{RayKind, RayTree, Settings, Whitted};
+use lancer_whitted::{AtLimit, Settings, Whitted};
 
 use super::shown;
 use crate::scenes;
@@ -78,71 +79,64 @@ pub fn make(effort: Effort) -> Finished {
         .note("Method", "eq:ambient, eq:local with ρ_d and ρ_s apart, eq:attenuation, eq:recursion; each \
              picture adds one term to those before, « shadows » takes back the light that vis(i) = 0 stops")
         .note("Settings", format!("scene whitted, {size}, 1 sample per pixel, depth 5"))
-        .note("Reference", "algo:lr, which knows nothing of the terms");
+        .note("Reference", "algo:lr to depth 5, which knows nothing of the terms; reflection and refraction are \
+             algo:lr to depth 4 from the surface on");
     Finished { plate, data }
 }
+
+/// Every ray is followed, so that both ways of counting follow the same ones.
+const WHOLE: Settings = Settings { max_depth: 5, min_weight: 0.0, at_limit: AtLimit::Black };
+/// What is left of it after the first bounce.
+const REST: Settings = Settings { max_depth: WHOLE.max_depth - 1, ..WHOLE };
 
 /// For each pixel the six terms of what its ray brings back, and what Whitted's method says of it.
 fn terms_of(scene: &Scene, size: ImageSize) -> (Vec<[Rgb; 6]>, Vec<Rgb>) {
     let index = ObvhsBvh2::build(scene);
     let world = World { scene, index: &index };
-    let whitted = Whitted::new(world, Settings::default());
+    let (whole, rest) = (Whitted::new(world, WHOLE), Whitted::new(world, REST));
     let rays = scene.camera.primary_rays(size);
     let sources = scene.point_sources();
     let pixels = (0..size.height).flat_map(|y| (0..size.width).map(move |x| (x, y)));
     pixels
         .map(|(x, y)| {
-            let film = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
-            let ray = rays.through(film.x, film.y);
-            let mut tree = RayTree::default();
-            let radiance = whitted.trace(&ray, &mut tree);
+            let ray = rays.through(f64::from(x) + 0.5, f64::from(y) + 0.5);
+            let radiance = whole.trace(&ray, &mut ());
+            let mut terms = [Rgb::ZERO; 6];
             let Some(hit) = index.closest_hit(&ray, Interval::POSITIVE) else {
-                let mut terms = [Rgb::ZERO; 6];
                 terms[0] = scene.background;
                 return (terms, radiance);
             };
             let surface = scene.surface_at(&ray, &hit);
             let material = scene.material(surface.material);
-            let n = surface.shading_normal_towards(-ray.direction);
+            let incident = ray.direction;
+            let n = surface.shading_normal_towards(-incident);
             let rho_d = material.rho_d.at(surface.position, surface.geometric_normal);
             let only = |diffuse: Rgb, specular: Rgb| Reflectance {
                 diffuse,
                 specular,
                 shininess: material.shininess,
             };
-            let mut terms = [Rgb::ZERO; 6];
             terms[0] = material.emission + ambient(rho_d, scene.ambient);
             for source in &sources {
-                let lit = |reflectance: &Reflectance| {
-                    light(
-                        source,
-                        reflectance,
-                        &surface.spawn_to(source.position),
-                        n,
-                        -ray.direction,
-                    )
-                };
-                let (diffuse, specular) =
-                    (lit(&only(rho_d, Rgb::ZERO)), lit(&only(Rgb::ZERO, material.rho_s)));
+                let shadow_ray = surface.spawn_to(source.position);
+                let lit = |reflectance| light(source, &reflectance, &shadow_ray, n, -incident);
+                let diffuse = lit(only(rho_d, Rgb::ZERO));
+                let specular = lit(only(Rgb::ZERO, material.rho_s));
                 terms[1] += diffuse;
                 terms[2] += specular;
-                let shadow_ray = surface.spawn_to(source.position);
                 if index.occluded(&shadow_ray, Interval::up_to(1.0)) {
                     terms[3] -= diffuse + specular;
                 }
             }
-            // The two rays from the surface, weighted as eq:recursion does. Where nothing is refracted,
-            // total reflection has given the mirror both shares.
-            let children = || tree.nodes.iter().filter(|node| node.parent == Some(0));
-            let refracts = children().any(|node| node.call.kind == RayKind::Refracted);
-            for child in children() {
-                match child.call.kind {
-                    RayKind::Mirror => {
-                        let k_t = if refracts { Rgb::ZERO } else { material.k_t };
-                        terms[4] += (material.k_s + k_t) * child.radiance;
-                    }
-                    _ => terms[5] += material.k_t * child.radiance,
-                }
+            let beyond = |direction| rest.trace(&surface.spawn(direction), &mut ());
+            if material.k_s != Rgb::ZERO {
+                terms[4] = material.k_s * beyond(reflect(incident, n));
+            }
+            // From outside, nothing is totally reflected.
+            if let Some(refracted) = refract(incident, n, 1.0, material.refractive_index)
+                && material.k_t != Rgb::ZERO
+            {
+                terms[5] = material.k_t * beyond(refracted);
             }
             (terms, radiance)
         })
@@ -153,9 +147,9 @@ fn terms_of(scene: &Scene, size: ImageSize) -> (Vec<[Rgb; 6]>, Vec<Rgb>) {
 fn light(
     source: &PointSource,
     reflectance: &Reflectance,
-    to_source: &lancer_core::geometry::Ray,
-    n: glam::DVec3,
-    to_eye: glam::DVec3,
+    to_source: &Ray,
+    n: DVec3,
+    to_eye: DVec3,
 ) -> Rgb {
     let distance = to_source.direction.length();
     let to_light = to_source.direction / distance;

@@ -1,18 +1,20 @@
 //! 1.6: one pixel's rays in the scene, beside the tree of the calls that traced them.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use glam::DVec2;
 use lancer_accel::ObvhsBvh2;
 use lancer_core::Rgb;
+use lancer_core::geometry::{Interval, Ray};
 use lancer_core::image::ImageSize;
+use lancer_core::intersector::{Hit, Intersector};
 use lancer_core::scene::Scene;
 use lancer_core::world::World;
 use lancer_figure::{
     Color, Drawing, Effort, FAINT, Finished, INK, LABEL, MUTED, Montage, Pen, Picture, Plate, Row,
     Stroke, Style, TICK, Table, Text, Tile, Tree, category_color, number,
 };
-use lancer_whitted::{
-    AtLimit, RayCounts, RayEnd, RayKind, RayNode, RayTree, Settings, Whitted, recursion,
-};
+use lancer_whitted::{AtLimit, RayEnd, RayKind, RayNode, RayTree, Settings, Whitted, recursion};
 
 use super::{shown, whitted_picture};
 use crate::scenes;
@@ -24,26 +26,29 @@ const SETTINGS: Settings = Settings { max_depth: 4, min_weight: 0.01, at_limit: 
 
 pub fn make(_: Effort) -> Finished {
     let scene = scenes::whitted();
-    let index = ObvhsBvh2::build(&scene);
+    let tree_of_boxes = ObvhsBvh2::build(&scene);
+    let index = Counting {
+        index: &tree_of_boxes,
+        closest: AtomicUsize::new(0),
+        occluded: AtomicUsize::new(0),
+    };
     let whitted = Whitted::new(World { scene: &scene, index: &index }, SETTINGS);
     let film = DVec2::new(f64::from(PIXEL.0) + 0.5, f64::from(PIXEL.1) + 0.5);
     let ray = scene.camera.primary_rays(SIZE).through(film.x, film.y);
-    let (mut tree, mut counts) = (RayTree::default(), RayCounts::default());
+    let mut tree = RayTree::default();
     let radiance = whitted.trace(&ray, &mut tree);
-    whitted.trace(&ray, &mut counts);
-
-    let traced = counts.primary + counts.mirror + counts.refracted;
+    let traced = index.closest.load(Ordering::Relaxed);
     let difference = (summed_up(&scene, &tree, 0) - radiance).abs().max_element();
     let shadows: usize = tree.nodes.iter().map(|node| node.shadows.len()).sum();
-    let holds =
-        tree.traced() as u64 == traced && shadows as u64 == counts.shadow && difference <= 1e-14;
+    let asked = index.occluded.load(Ordering::Relaxed);
+    let holds = tree.traced() == traced && shadows == asked && difference <= 1e-14;
     let difference_text = if difference == 0.0 {
         "to the last bit".to_owned()
     } else {
         format!("to {}", number(difference))
     };
     let claim = format!(
-        "The tree has a node for each of the {traced} rays that were traced, and summing it up by \
+        "The tree has a node for each of the {traced} rays that the index was asked for, and summing it up by \
          I_Local + k_s I_Refl + k_t I_Trans gives the pixel again, {difference_text}."
     );
 
@@ -91,6 +96,25 @@ pub fn make(_: Effort) -> Finished {
         ))
         .note("Method", "algo:lr followed by a recorder (fig:ray-tree); eq:recursion");
     Finished { plate, data }
+}
+
+/// Counts what an index is asked for, whatever the recorder says.
+struct Counting<'a> {
+    index: &'a dyn Intersector,
+    closest: AtomicUsize,
+    occluded: AtomicUsize,
+}
+
+impl Intersector for Counting<'_> {
+    fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
+        self.closest.fetch_add(1, Ordering::Relaxed);
+        self.index.closest_hit(ray, range)
+    }
+
+    fn occluded(&self, ray: &Ray, range: Interval) -> bool {
+        self.occluded.fetch_add(1, Ordering::Relaxed);
+        self.index.occluded(ray, range)
+    }
 }
 
 /// The radiance of a node from its own local term and its children, by eq:recursion.

@@ -1,15 +1,13 @@
 //! 0.3: rays aimed at what triangles share, against three tests that all look right.
 
-use std::time::Instant;
-
 use glam::{DVec2, DVec3};
 use lancer_core::generate::icosphere;
 use lancer_core::geometry::{Ray, Shear, intersect_triangle};
 use lancer_core::sampling::{Pattern, PixelSampling};
 use lancer_core::scene::Mesh;
 use lancer_figure::{
-    BarChart, Effort, Finished, Inset, Montage, Picture, Plate, Row, Table, Tile, category_color,
-    method_color,
+    BarChart, Color, Contender, Effort, Finished, Inset, Montage, Picture, Plate, Row, Study, Tile,
+    category_color, method_color, number,
 };
 
 use crate::naive::{fused_edges, moeller_trumbore};
@@ -26,68 +24,72 @@ const TESTS: [(&str, Test); 3] = [
     ("watertight", watertight),
 ];
 
+const COLORS: [fn() -> Color; 3] =
+    [|| method_color("naive"), || category_color(1), || category_color(2)];
+
 /// Where the rays go.
 const AIMS: [&str; 3] = ["random directions", "points of edges", "vertices"];
 
 pub fn make(effort: Effort) -> Finished {
     let mesh = icosphere(3);
-    let count = effort.pick(2_000, 50_000);
-    let mut data = Table::new(["test", "aim", "rays", "leaks", "nanoseconds_per_test"]);
-    let mut leaks = [[0; AIMS.len()]; TESTS.len()];
-    let mut cost = [0.0; TESTS.len()];
-    for (a, aim) in AIMS.iter().enumerate() {
-        let rays = aimed(&mesh, a, count);
-        for (t, (name, test)) in TESTS.iter().enumerate() {
-            let start = Instant::now();
-            let (missed, tested) = leaking(&mesh, &rays, *test);
-            cost[t] = start.elapsed().as_secs_f64() * 1e9 / tested as f64;
-            leaks[t][a] = missed;
-            data.push([(*name).into(), (*aim).into(), count.into(), missed.into(), cost[t].into()]);
-        }
-    }
-    let ours = leaks[2];
-    let holds = ours == [0; 3] && leaks[0][1] > 0 && leaks[0][2] > 0 && leaks[1][1] > 0;
-    let per_cent = |leaks: usize| 100.0 * leaks as f64 / count as f64;
+    let count = effort.pick(2_000, 20_000);
+    let rays: Vec<Vec<Ray>> = (0..AIMS.len()).map(|aim| aimed(&mesh, aim, count)).collect();
+    let contenders = TESTS
+        .iter()
+        .zip(COLORS)
+        .flat_map(|(&(name, test), color)| {
+            let (mesh, rays) = (&mesh, &rays);
+            (0..AIMS.len()).map(move |aim| Contender {
+                label: name.to_owned(),
+                color: color(),
+                knob: AIMS[aim].to_owned(),
+                run: Box::new(move || leaking(mesh, &rays[aim], test)),
+            })
+        })
+        .collect();
+    let (study, _) = Study::measure("tests", 3, contenders, |&leaks: &usize| {
+        vec![("leaking rays (%)", 100.0 * leaks as f64 / count as f64)]
+    });
+    let leaks = |test: usize| AIMS.map(|aim| study.error(TESTS[test].0, aim, "leaking rays (%)"));
+    let all = [leaks(0), leaks(1), leaks(2)];
+    let [moeller_trumbore_leaks, fused_leaks, watertight_leaks] = all;
+    let holds = watertight_leaks == [0.0; 3]
+        && moeller_trumbore_leaks[1].min(moeller_trumbore_leaks[2]) > 0.0
+        && fused_leaks[1] > 0.0
+        && all.iter().all(|leaks| leaks[0] == 0.0);
     let claim = format!(
         "Of {count} rays aimed at vertices of a closed mesh, Möller-Trumbore lets {:.1} % through, the \
-         watertight test {}; random rays find no leak in any of them.",
-        per_cent(leaks[0][2]),
-        if ours == [0; 3] { "none".to_owned() } else { format!("{}", ours[2]) },
+         watertight test {} %; rays in random directions find no leak in any test.",
+        moeller_trumbore_leaks[2],
+        number(watertight_leaks[2]),
     );
-    let random_find_nothing = leaks.iter().all(|row| row[0] == 0);
 
-    let mut bars = BarChart::new("rays that leak (%)", AIMS).title("Leaks");
-    for (t, (name, _)) in TESTS.iter().enumerate() {
-        let color = [method_color("naive"), category_color(1), category_color(2)][t];
-        bars = bars.series(*name, color, leaks[t].map(per_cent));
+    let mut bars = BarChart::new("leaking rays (%)", AIMS).title("Leaks");
+    for ((name, _), (color, leaks)) in TESTS.iter().zip(COLORS.iter().zip(all)) {
+        bars = bars.series(*name, color(), leaks);
     }
     let relief = Relief::new(effort.pick([48, 32], [192, 128]));
     let inset = effort.pick(Inset::new(14, 10, 16, 10), Inset::new(70, 50, 40, 26));
-    let pictures = Montage::new()
-        .tile(
-            Tile::new("Möller-Trumbore", relief.seen_by(moeller_trumbore))
-                .color(method_color("naive")),
-        )
-        .tile(Tile::new("Watertight", relief.seen_by(watertight)).color(category_color(2)))
-        .inset(inset)
-        .insets_right()
-        .columns(2);
-    let plate = Plate::new("0.3", "No ray passes between two triangles", claim, holds && random_find_nothing)
+    let tile = |test: usize| {
+        let (name, function) = TESTS[test];
+        Tile::new(name, relief.seen_by(function)).color(COLORS[test]())
+    };
+    let pictures =
+        Montage::new().tile(tile(0)).tile(tile(2)).inset(inset).insets_right().columns(2);
+    let plate = Plate::new("0.3", "No ray passes between two triangles", claim, holds)
         .panel(pictures)
         .panel(Row::new().panel(1.0, bars))
+        .panel(study.chart("leaking rays (%)"))
         .note("Pictures", "a relief, every pixel's ray aimed at a vertex; black is a ray that met nothing")
         .note("Method", format!(
-            "eq:ray-triangle in f64, a closed sphere of {} triangles seen from inside; the edge functions \
-             of neighbours must agree to the last bit, which a fused multiply-add breaks",
+            "eq:ray-triangle in f64, a closed sphere of {} triangles seen from inside, tried in order until \
+             one is met; the edge functions of neighbours must agree to the last bit, which a fused \
+             multiply-add breaks. The watertight test also works out t, its error bound and the weights, \
+             and prepares its ray anew for each triangle here",
             mesh.triangles.len()
         ))
-        .note("Cost", format!(
-            "{:.1} / {:.1} / {:.1} ns per triangle, in the order of the legend (the watertight test also \
-             works out t, its error bound and the weights, and prepares each ray once per triangle here)",
-            cost[0], cost[1], cost[2]
-        ))
         .note("Reference", "exact: no ray from inside leaves a closed mesh");
-    Finished { plate, data }
+    Finished { plate, data: study.table() }
 }
 
 /// Rays from around the middle of a closed mesh.
@@ -112,13 +114,13 @@ fn aimed(mesh: &Mesh, aim: usize, count: usize) -> Vec<Ray> {
 }
 
 /// How many rays meet no triangle, and how many tests that took.
-fn leaking(mesh: &Mesh, rays: &[Ray], test: Test) -> (usize, usize) {
+fn leaking(mesh: &Mesh, rays: &[Ray], test: Test) -> (usize, u64) {
     let mut tested = 0;
     let missed = rays
         .iter()
         .filter(|ray| {
             let first = (0..mesh.triangles.len()).position(|index| test(mesh.corners(index), ray));
-            tested += first.map_or(mesh.triangles.len(), |index| index + 1);
+            tested += first.map_or(mesh.triangles.len(), |index| index + 1) as u64;
             first.is_none()
         })
         .count();

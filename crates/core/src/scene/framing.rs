@@ -79,7 +79,7 @@ impl Camera {
     pub fn check(&self) -> Result<(), CameraError> {
         let view = self.look_at - self.eye;
         let across = view.cross(self.up).length();
-        let is_in_space = |v: DVec3| v.abs().max_element() <= MAX_COORDINATE;
+        let is_in_space = |v: DVec3| v.abs().cmple(DVec3::splat(MAX_COORDINATE)).all();
         if !(is_in_space(self.eye) && is_in_space(self.look_at) && is_in_space(self.up)) {
             Err(CameraError::NotFinite)
         } else if view == DVec3::ZERO {
