@@ -69,7 +69,8 @@ pub struct Probe<'s> {
     scene: &'s Scene,
     ray: &'s Ray,
     range: Interval,
-    shear: Shear,
+    /// Prepared when the first triangle is tested: many rays meet none.
+    shear: Option<Shear>,
     best: Option<Hit>,
 }
 
@@ -77,7 +78,7 @@ impl<'s> Probe<'s> {
     /// A ray that has met nothing yet.
     #[inline]
     pub fn new(scene: &'s Scene, ray: &'s Ray, range: Interval) -> Self {
-        Self { scene, ray, range, shear: Shear::new(ray.direction), best: None }
+        Self { scene, ray, range, shear: None, best: None }
     }
 
     /// Tests one primitive and keeps it if it wins. Returns whether it was met at all.
@@ -95,12 +96,13 @@ impl<'s> Probe<'s> {
     }
 
     #[inline]
-    fn intersect(&self, primitive: PrimitiveId) -> Option<(f64, DVec3)> {
+    fn intersect(&mut self, primitive: PrimitiveId) -> Option<(f64, DVec3)> {
         let index = primitive.0 as usize;
         let triangles = self.scene.mesh.triangles.len();
         if index < triangles {
             let corners = self.scene.mesh.corners(index);
-            intersect_triangle(corners, self.ray, &self.shear).map(|hit| (hit.t, hit.barycentric))
+            let shear = self.shear.get_or_insert_with(|| Shear::new(self.ray.direction));
+            intersect_triangle(corners, self.ray, shear).map(|hit| (hit.t, hit.barycentric))
         } else {
             // The sphere's own range test would hide ties at the far end from `test`.
             let range = Interval { min: self.range.min, max: f64::INFINITY };

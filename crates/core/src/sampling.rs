@@ -36,7 +36,10 @@ impl PixelSampling {
     #[inline]
     pub fn points(self, x: u32, y: u32) -> impl Iterator<Item = DVec2> {
         let corner = DVec2::new(f64::from(x), f64::from(y));
-        let key = pixel_key(self.seed, x, y);
+        let key = match self.pattern {
+            Pattern::Regular => 0,
+            Pattern::Jittered | Pattern::Owen => pixel_key(self.seed, x, y),
+        };
         let mut random = Pcg32::new(key, key);
         let cells = grid(self.samples);
         (0..self.samples).map(move |index| {

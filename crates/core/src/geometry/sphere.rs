@@ -30,18 +30,19 @@ impl Sphere {
     #[inline]
     pub fn intersect(&self, ray: &Ray, range: Interval) -> Option<f64> {
         let (f, d) = (ray.origin - self.center, ray.direction);
+        let (fd, ff, rr) = (f.dot(d), f.length_squared(), self.radius * self.radius);
+        let (product, error) = (ff - rr, gamma(8) * (ff + rr));
+        if fd >= 0.0 && product >= -error {
+            // Outside or on the sphere and not approaching it: no root is positive.
+            return None;
+        }
         let dd = d.length_squared();
-        let rr = self.radius * self.radius;
         let discriminant = dd * rr - f.cross(d).length_squared();
         // `>=` accepts: a NaN anywhere above ends here as a miss.
         if !(discriminant >= 0.0 && self.radius > 0.0) {
             return None;
         }
-        let fd = f.dot(d);
         let q = -fd - discriminant.sqrt().copysign(fd);
-        let ff = f.length_squared();
-        let product = ff - rr;
-        let error = gamma(8) * (ff + rr);
         // t = product / q, unless its sign is rounding noise.
         let by_product = if product.abs() > error { product / q } else { 0.0 };
         let by_sum = q / dd;

@@ -100,7 +100,7 @@ fn sheared(axis: Axis, corners: [[f64; 3]; 3], shear: &Shear) -> Option<Triangle
     let u = cx * by - cy * bx;
     let v = ax * cy - ay * cx;
     let w = bx * ay - by * ax;
-    if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
+    if min(u, v, w) < 0.0 && max(u, v, w) > 0.0 {
         return None;
     }
     let det = u + v + w;
@@ -128,12 +128,25 @@ fn sheared(axis: Axis, corners: [[f64; 3]; 3], shear: &Shear) -> Option<Triangle
 /// Whether the ray, at 0 in sheared coordinates, lies outside the range of three corners.
 #[inline(always)]
 fn beside(a: f64, b: f64, c: f64) -> bool {
-    (a > 0.0 && b > 0.0 && c > 0.0) || (a < 0.0 && b < 0.0 && c < 0.0)
+    min(a, b, c) > 0.0 || max(a, b, c) < 0.0
+}
+
+/// The smallest, by comparisons that become single instructions; `f64::min` also looks after NaN,
+/// which the last test of [`sheared`] does.
+#[inline(always)]
+fn min(a: f64, b: f64, c: f64) -> f64 {
+    let ab = if a < b { a } else { b };
+    if ab < c { ab } else { c }
+}
+
+/// The largest, in the same way as [`min`].
+#[inline(always)]
+fn max(a: f64, b: f64, c: f64) -> f64 {
+    let ab = if a > b { a } else { b };
+    if ab > c { ab } else { c }
 }
 
 #[inline(always)]
 fn max_abs(a: f64, b: f64, c: f64) -> f64 {
-    let (a, b, c) = (a.abs(), b.abs(), c.abs());
-    let ab = if a > b { a } else { b };
-    if ab > c { ab } else { c }
+    max(a.abs(), b.abs(), c.abs())
 }
