@@ -1,23 +1,22 @@
-use glam::{DVec3, Vec4, Vec4Swizzles};
+use glam::{DVec3, Vec3A, Vec4};
 use lancer_core::geometry::{Bounds3, Ray};
 
-/// The boxes of two siblings, in `f32`, laid out to be tested together.
-///
-/// Per axis one vector (min of the first, min of the second, max of the first, max of the second).
+/// Four boxes in `f32`, laid out to be tested together: one lane each.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct PairBounds {
-    axes: [Vec4; 3],
+pub(crate) struct FourBoxes {
+    /// Per axis the lanes' smallest and largest coordinates.
+    planes: [[Vec4; 2]; 3],
 }
 
-impl PairBounds {
-    /// Two boxes given by their smallest and largest coordinates.
-    pub(crate) fn new(first: [[f32; 3]; 2], second: [[f32; 3]; 2]) -> Self {
-        let [first_min, first_max] = first;
-        let [second_min, second_max] = second;
-        Self {
-            axes: [0, 1, 2].map(|axis| {
-                Vec4::new(first_min[axis], second_min[axis], first_max[axis], second_max[axis])
-            }),
+impl FourBoxes {
+    /// Four boxes that no ray meets.
+    pub(crate) const EMPTY: Self = Self { planes: [[Vec4::INFINITY, Vec4::NEG_INFINITY]; 3] };
+
+    /// Puts a box, given by its smallest and largest coordinates, into a lane.
+    pub(crate) fn set(&mut self, lane: usize, [min, max]: [Vec3A; 2]) {
+        for (axis, planes) in self.planes.iter_mut().enumerate() {
+            planes[0][lane] = min[axis];
+            planes[1][lane] = max[axis];
         }
     }
 }
@@ -42,95 +41,102 @@ impl Frame {
     }
 
     /// A box in this frame, rounded outwards by more than the primitive test can err.
-    pub(crate) fn outwards(&self, bounds: Bounds3) -> [[f32; 3]; 2] {
+    pub(crate) fn outwards(&self, bounds: Bounds3) -> [Vec3A; 2] {
         let margin = f64::from(f32::EPSILON);
         let unit = |p: DVec3| (p - self.center) * self.to_unit;
-        let min = (unit(bounds.min) - margin).as_vec3().to_array().map(f32::next_down);
-        let max = (unit(bounds.max) + margin).as_vec3().to_array().map(f32::next_up);
-        [min, max]
+        let min = (unit(bounds.min) - margin).as_vec3a().to_array().map(f32::next_down);
+        let max = (unit(bounds.max) + margin).as_vec3a().to_array().map(f32::next_up);
+        [min.into(), max.into()]
     }
 }
 
-/// A ray prepared for conservative `f32` tests of [`PairBounds`].
+/// A ray prepared for conservative `f32` tests of [`FourBoxes`].
 ///
-/// A slab is t = plane · inverse + offset. Rounding the plane, the origin (`f64` to `f32`), the inverse
-/// and the two operations moves a plane by less than 8 u (1 + |origin|), u = 2⁻²⁴; the offsets carry
-/// that pad, near ones towards the origin and far ones away from it, so a box is entered too early
-/// or left too late, never missed. A direction component near 0 is replaced by a tiny one of its
-/// sign: then no 0 · ∞ = NaN can arise.
+/// A slab is t = plane · inverse + offset. Rounding the origin and the direction to `f32`, the
+/// inverse and the two operations moves a plane by less than 8 u (1 + |origin|), u = 2⁻²⁴: the product
+/// errs by 3 u |plane|, the offset by 5 u |origin|, their sum by u (|plane| + |origin|), and |plane| is
+/// at most 1. The offsets carry that pad, near ones towards the origin and far ones away from it, so a
+/// box is entered too early or left too late, never missed. A direction component near 0 is replaced by
+/// a tiny one of its sign: then no 0 · ∞ = NaN can arise.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct PairSlabs {
-    inverse: [f32; 3],
-    offset: [Vec4; 3],
-    /// The ray's parameter is `skipped + t · per_unit`.
-    skipped: f64,
+pub(crate) struct FourSlabs {
+    /// Per axis: the ray travels towards smaller coordinates.
+    negative: [bool; 3],
+    inverse: Vec3A,
+    near_offset: Vec3A,
+    far_offset: Vec3A,
+    /// The parameter in units of the boxes is `t · per_unit − skipped`.
     per_unit: f64,
-    /// Boxes left before this are behind the ray.
-    start: f32,
+    skipped: f64,
 }
 
-/// Components of a direction below this fraction of the largest count as this fraction.
-const TINY: f64 = 1e-18;
-const PAD: f64 = 8.0 * 0.5 * f32::EPSILON as f64;
+/// Components of a direction below this count as this; the largest is at least 2³⁰ times as long.
+const TINY: f32 = 1e-20;
+const PAD: f32 = 8.0 * 0.5 * f32::EPSILON;
 
-impl PairSlabs {
+impl FourSlabs {
     /// Prepares the tests of a ray.
+    #[inline]
     pub(crate) fn new(ray: &Ray, frame: &Frame) -> Self {
-        let per_direction = ray.direction.abs().max_element().recip();
-        let direction = ray.direction * per_direction;
-        let mut origin = (ray.origin - frame.center) * frame.to_unit;
-        // An origin far outside would pad the boxes into nothing: start near the scene instead. The
-        // rounding of a start far away then counts as well.
-        let (mut skip, mut far_rounding) = (0.0, 0.0);
-        let away = origin.length_squared();
-        if away > 16.0 {
-            let away = away.sqrt();
-            skip = (away - 2.0) / direction.length();
-            far_rounding = 8.0 * f64::EPSILON * away;
-            origin += skip * direction;
-        }
-        let axis = |o: f64, d: f64| {
-            let d = if d.abs() < TINY { TINY.copysign(d) } else { d };
-            let inverse = d.recip();
-            let widen = (PAD * (1.0 + o.abs()) + far_rounding) * inverse.abs();
-            let (near, far) = ((-o * inverse - widen) as f32, (-o * inverse + widen) as f32);
-            let offset = if d > 0.0 {
-                Vec4::new(near, near, far, far)
-            } else {
-                Vec4::new(far, far, near, near)
-            };
-            (inverse as f32, offset)
-        };
-        let (x, y, z) =
-            (axis(origin.x, direction.x), axis(origin.y, direction.y), axis(origin.z, direction.z));
-        Self {
-            inverse: [x.0, y.0, z.0],
-            offset: [x.1, y.1, z.1],
-            skipped: skip,
-            per_unit: frame.to_unit / per_direction,
-            start: (-skip) as f32,
+        let origin = (ray.origin - frame.center) * frame.to_unit;
+        let length_squared = ray.direction.length_squared();
+        if origin.length_squared() <= 16.0 && length_squared > 1e-18 && length_squared < 1e18 {
+            Self::prepare(origin, ray.direction, 0.0, frame.to_unit, 0.0)
+        } else {
+            Self::from_afar(origin, ray.direction, frame)
         }
     }
 
-    /// A parameter of the ray in the units of the boxes, rounded up.
+    /// A direction of extreme length is scaled. An origin far outside would pad the boxes into
+    /// nothing: it moves close to the scene, and the rounding of that counts as well.
+    #[cold]
+    fn from_afar(origin: DVec3, direction: DVec3, frame: &Frame) -> Self {
+        let longest = direction.abs().max_element();
+        let direction = direction / longest;
+        let away = origin.length();
+        let skip = if away < 2.0 { 0.0 } else { (away - 2.0) / direction.length() };
+        let rounding = 8.0 * f64::EPSILON * away;
+        let origin = origin + skip * direction;
+        Self::prepare(origin, direction, rounding as f32, frame.to_unit * longest, skip)
+    }
+
+    #[inline(always)]
+    fn prepare(origin: DVec3, direction: DVec3, moved: f32, per_unit: f64, skipped: f64) -> Self {
+        let (origin, direction) = (origin.as_vec3a(), direction.as_vec3a());
+        let inverse = direction.abs().max(Vec3A::splat(TINY)).copysign(direction).recip();
+        let widen = ((origin.abs() + 1.0) * PAD + moved) * inverse.abs();
+        let offset = -origin * inverse;
+        let negative = direction.is_negative_bitmask();
+        Self {
+            negative: [0, 1, 2].map(|axis| negative & (1 << axis) != 0),
+            inverse,
+            near_offset: offset - widen,
+            far_offset: offset + widen,
+            // A parameter is rounded up when it becomes an `f32`.
+            per_unit: per_unit * (1.0 + f64::from(f32::EPSILON)),
+            skipped,
+        }
+    }
+
+    /// A parameter of the ray in the units of the boxes, rounded up if it is not before the boxes.
     #[inline(always)]
     pub(crate) fn parameter(&self, t: f64) -> f32 {
-        ((t * self.per_unit - self.skipped) as f32).next_up()
+        (t * self.per_unit - self.skipped) as f32
     }
 
-    /// Entry parameters of the two boxes, `None` where the ray misses the box, enters it after `max`
-    /// or leaves it before its start.
+    /// Entry parameters of the four boxes, and a mask of the lanes whose box the ray meets before
+    /// `max`.
     #[inline(always)]
-    pub(crate) fn enter(&self, pair: &PairBounds, max: f32) -> [Option<f32>; 2] {
-        let mut near = Vec4::splat(f32::NEG_INFINITY);
-        let mut far = Vec4::splat(max);
+    pub(crate) fn enter(&self, boxes: &FourBoxes, max: f32) -> (Vec4, u32) {
+        let (mut near, mut far) = (Vec4::ZERO, Vec4::splat(max));
         for axis in 0..3 {
-            let t = pair.axes[axis] * self.inverse[axis] + self.offset[axis];
-            let swapped = t.zwxy();
-            near = near.max(t.min(swapped));
-            far = far.min(t.max(swapped));
+            let negative = self.negative[axis];
+            let first = boxes.planes[axis][usize::from(negative)];
+            let last = boxes.planes[axis][usize::from(!negative)];
+            // In this order a NaN, of an invalid ray, is kept and ends as a miss.
+            near = near.max(first * self.inverse[axis] + self.near_offset[axis]);
+            far = far.min(last * self.inverse[axis] + self.far_offset[axis]);
         }
-        let met = near.cmple(far) & far.cmpge(Vec4::splat(self.start));
-        [met.test(0).then_some(near.x), met.test(1).then_some(near.y)]
+        (near, near.cmple(far).bitmask())
     }
 }

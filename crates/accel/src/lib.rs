@@ -5,7 +5,7 @@
 //! bit and the same primitive. To that end boxes are culled conservatively and primitives are decided
 //! by one shared `f64` test, [`lancer_core::intersector::Probe`].
 
+mod four_boxes;
 mod obvhs_bvh2;
-mod pair_slabs;
 
 pub use obvhs_bvh2::ObvhsBvh2;

@@ -1,3 +1,5 @@
+use std::ops::Range;
+
 use glam::Vec3A;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::intersector::{Hit, Intersector, Observer, Probe};
@@ -6,44 +8,64 @@ use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
+use obvhs::bvh2::node::Bvh2Node;
 use smallvec::SmallVec;
 
-use crate::pair_slabs::{Frame, PairBounds, PairSlabs};
+use crate::four_boxes::{FourBoxes, FourSlabs, Frame};
 
-/// A binary bounding volume hierarchy built by the obvhs library and walked here.
+/// The binary bounding volume hierarchy that the obvhs library builds, walked two levels at a time.
 ///
 /// The library builds good trees fast, in `f32`. Its own traversal and triangle test are made for
 /// speed and lose rays aimed at edges and vertices, so only its tree is taken over: boxes in `f32`,
-/// rounded outwards, visited conservatively, and primitives decided in `f64`.
+/// rounded outwards, visited conservatively, and primitives decided in `f64`. A node here has up to
+/// four children, since four boxes are tested at the price of one.
 pub struct ObvhsBvh2<'s> {
     scene: &'s Scene,
     frame: Frame,
-    root: Option<Child>,
-    pairs: Vec<Pair>,
+    /// The first is the root.
+    nodes: Vec<Node>,
     /// The primitives of the leaves, leaf by leaf.
     primitives: Vec<PrimitiveId>,
 }
 
-/// The two children of an inner node, one cache line.
+/// An inner node: its children and their boxes, two cache lines. A lane without a child has an empty
+/// box, and is a leaf without primitives.
 #[repr(align(64))]
-struct Pair {
-    bounds: PairBounds,
-    children: [Child; 2],
+struct Node {
+    boxes: FourBoxes,
+    /// Per lane the index of a node or, in a leaf, of the first primitive.
+    first: [u32; 4],
+    /// Per lane the primitives of a leaf.
+    count: [u8; 4],
+    /// One bit per lane: its child is a leaf.
+    leaves: u32,
 }
 
-/// An inner node, whose children are `pairs[first]`, if `count` is 0; else a leaf with the primitives
-/// `first .. first + count`.
-#[derive(Clone, Copy, Debug)]
-struct Child {
-    first: u32,
-    count: u32,
+impl Node {
+    const EMPTY: Self =
+        Self { boxes: FourBoxes::EMPTY, first: [0; 4], count: [0; 4], leaves: 0b1111 };
+
+    /// The primitives of the leaf in a lane.
+    #[inline(always)]
+    fn leaf(&self, lane: usize) -> Range<usize> {
+        let first = self.first[lane] as usize;
+        first..first + usize::from(self.count[lane])
+    }
 }
 
-/// A child still to be visited, and the parameter at which the ray enters it.
-type Pending = (Child, f32);
+/// A node still to be visited: the parameter at which the ray enters it, at least 0, in the upper half
+/// and its index in the lower one. Such numbers are ordered near to far.
+type Pending = u64;
 
-/// What is still to be visited. A tree deeper than 64 is rare and pays for an allocation.
+/// What is still to be visited. A tree that needs more than 64 is rare and pays for an allocation.
 type Stack = SmallVec<[Pending; 64]>;
+
+/// Leaves of at most three primitives: a primitive's `f64` test costs as much as a node's.
+const BUILD: BvhBuildParams = BvhBuildParams {
+    max_prims_per_leaf: 3,
+    collapse_traversal_cost: 1.0,
+    ..BvhBuildParams::medium_build()
+};
 
 impl<'s> ObvhsBvh2<'s> {
     /// Builds the tree over all primitives of the scene.
@@ -53,27 +75,27 @@ impl<'s> ObvhsBvh2<'s> {
             .primitives()
             .map(|primitive| {
                 let [min, max] = frame.outwards(scene.primitive_bounds(primitive));
-                Aabb::new(Vec3A::from_array(min), Vec3A::from_array(max))
+                Aabb::new(min, max)
             })
             .collect();
         let tree = if boxes.is_empty() {
             Bvh2::default()
         } else {
-            build_bvh2(&boxes, BvhBuildParams::medium_build(), &mut Default::default())
+            build_bvh2(&boxes, BUILD, &mut Default::default())
         };
         drop(boxes);
-        let mut pairs = Vec::with_capacity(tree.nodes.len() / 2);
-        let root = (!tree.nodes.is_empty()).then(|| take_over(&tree, &mut pairs));
+        let nodes = if tree.nodes.is_empty() { Vec::new() } else { take_over(&tree) };
         let primitives = tree.primitive_indices.into_iter().map(PrimitiveId).collect();
-        Self { scene, frame, root, pairs, primitives }
+        Self { scene, frame, nodes, primitives }
     }
 
     /// Bytes held by the index, without the scene it borrows.
     pub fn memory(&self) -> usize {
-        size_of_val(self.pairs.as_slice()) + size_of_val(self.primitives.as_slice())
+        size_of_val(self.nodes.as_slice()) + size_of_val(self.primitives.as_slice())
     }
 
-    /// Visits the primitives whose boxes the ray meets, near boxes first, until `done` says so.
+    /// Visits the primitives whose boxes the ray meets, the leaves of a node before its other
+    /// children and the nearest of those next, until `done` says so.
     #[inline]
     pub fn walk<O: Observer>(
         &self,
@@ -83,92 +105,115 @@ impl<'s> ObvhsBvh2<'s> {
         done: impl Fn(&Probe) -> bool,
     ) -> Option<Hit> {
         let mut probe = Probe::new(self.scene, ray, range);
-        let slabs = PairSlabs::new(ray, &self.frame);
+        let slabs = FourSlabs::new(ray, &self.frame);
         let mut max = slabs.parameter(range.max);
         let mut stack = Stack::new();
-        let mut next = self.root;
-        while let Some(child) = next {
-            if child.count > 0 {
-                let leaf = child.first as usize..(child.first + child.count) as usize;
-                for &primitive in &self.primitives[leaf] {
+        let mut next = self.nodes.first();
+        while let Some(node) = next {
+            (0..4).for_each(|_| observer.box_test());
+            let (near, met) = slabs.enter(&node.boxes, max);
+            let near = near.to_array();
+            for lane in Lanes(met & node.leaves) {
+                if near[lane] > max {
+                    continue;
+                }
+                for &primitive in &self.primitives[node.leaf(lane)] {
                     observer.primitive_test(primitive);
                     if probe.test(primitive) && done(&probe) {
                         return probe.best();
                     }
                 }
                 max = slabs.parameter(probe.range().max);
-                next = pop(&mut stack, max);
-                continue;
             }
-            let pair = &self.pairs[child.first as usize];
-            observer.box_test();
-            observer.box_test();
-            let [left, right] = pair.children;
-            next = match slabs.enter(&pair.bounds, max) {
-                [Some(l), Some(r)] if l <= r => {
-                    stack.push((right, r));
-                    Some(left)
+            let mut inner =
+                Lanes(met & !node.leaves).map(|lane| pending(near[lane], node.first[lane]));
+            next = if let Some(mut nearest) = inner.next() {
+                for other in inner {
+                    stack.push(nearest.max(other));
+                    nearest = nearest.min(other);
                 }
-                [Some(l), Some(_)] => {
-                    stack.push((left, l));
-                    Some(right)
-                }
-                [Some(_), None] => Some(left),
-                [None, Some(_)] => Some(right),
-                [None, None] => pop(&mut stack, max),
-            };
+                Some(nearest as u32)
+            } else {
+                pop(&mut stack, max)
+            }
+            .map(|index| &self.nodes[index as usize]);
         }
         probe.best()
     }
 }
 
-/// The next child that is not entirely behind the closest hit.
+/// The set bits of a mask of four lanes.
+struct Lanes(u32);
+
+impl Iterator for Lanes {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        if self.0 == 0 {
+            return None;
+        }
+        let lane = self.0.trailing_zeros() as usize % 4;
+        self.0 &= self.0 - 1;
+        Some(lane)
+    }
+}
+
 #[inline(always)]
-fn pop(stack: &mut Stack, max: f32) -> Option<Child> {
+fn pending(near: f32, node: u32) -> Pending {
+    u64::from(near.to_bits()) << 32 | u64::from(node)
+}
+
+/// The next node that is not entirely behind the closest hit.
+#[inline(always)]
+fn pop(stack: &mut Stack, max: f32) -> Option<u32> {
     loop {
-        let (child, near) = stack.pop()?;
-        if near <= max {
-            return Some(child);
+        let pending = stack.pop()?;
+        if f32::from_bits((pending >> 32) as u32) <= max {
+            return Some(pending as u32);
         }
     }
 }
 
-/// Copies the tree into pairs, in depth-first order, and returns its root.
-fn take_over(tree: &Bvh2, pairs: &mut Vec<Pair>) -> Child {
-    const LATER: u32 = u32::MAX;
-    let child = |index: u32| {
-        let node = &tree.nodes[index as usize];
-        Child {
-            first: if node.is_leaf() { node.first_index } else { LATER },
-            count: node.prim_count,
+/// Copies the tree into nodes of four, in depth-first order; the first is the root.
+fn take_over(tree: &Bvh2) -> Vec<Node> {
+    let mut nodes: Vec<Node> = Vec::with_capacity(tree.nodes.len() / 3);
+    // (a node of the tree, the node and lane that refer to it)
+    let mut pending: Vec<(&Bvh2Node, Option<(usize, usize)>)> = vec![(&tree.nodes[0], None)];
+    while let Some((top, referrer)) = pending.pop() {
+        let index = nodes.len();
+        if let Some((parent, lane)) = referrer {
+            nodes[parent].first[lane] = index as u32;
         }
-    };
-    let corners = |index: u32| {
-        let node = &tree.nodes[index as usize];
-        [node.min.to_array(), node.max.to_array()]
-    };
-    let mut root = child(0);
-    // (index in the tree, the pair and side that refer to it)
-    let mut pending: Vec<(u32, Option<(usize, usize)>)> = vec![(0, None)];
-    while let Some((index, referrer)) = pending.pop() {
-        let node = &tree.nodes[index as usize];
-        if node.is_leaf() {
-            continue;
+        nodes.push(Node::EMPTY);
+        for (lane, below) in open(tree, top).into_iter().enumerate() {
+            let node = &mut nodes[index];
+            node.boxes.set(lane, [Vec3A::from(below.min), Vec3A::from(below.max)]);
+            if below.is_leaf() {
+                node.first[lane] = below.first_index;
+                node.count[lane] = below.prim_count as u8;
+            } else {
+                node.leaves ^= 1 << lane;
+                pending.push((below, Some((index, lane))));
+            }
         }
-        let (left, right) = (node.first_index, node.first_index + 1);
-        let pair = pairs.len();
-        pairs.push(Pair {
-            bounds: PairBounds::new(corners(left), corners(right)),
-            children: [child(left), child(right)],
-        });
-        match referrer {
-            Some((parent, side)) => pairs[parent].children[side].first = pair as u32,
-            None => root.first = pair as u32,
-        }
-        pending.push((right, Some((pair, 1))));
-        pending.push((left, Some((pair, 0))));
     }
-    root
+    nodes
+}
+
+/// The up to four nodes that a node of the tree is opened into: always the largest inner one next.
+fn open<'t>(tree: &'t Bvh2, top: &'t Bvh2Node) -> SmallVec<[&'t Bvh2Node; 4]> {
+    let area = |node: &Bvh2Node| node.aabb().half_area();
+    let mut open: SmallVec<[&Bvh2Node; 4]> = SmallVec::from_slice(&[top]);
+    while open.len() < 4 {
+        let inner = (0..open.len()).filter(|&lane| !open[lane].is_leaf());
+        let largest = inner.max_by(|&a, &b| area(open[a]).total_cmp(&area(open[b])));
+        let Some(largest) = largest else { break };
+        let first = open[largest].first_index as usize;
+        open[largest] = &tree.nodes[first];
+        open.push(&tree.nodes[first + 1]);
+    }
+    open
 }
 
 impl Intersector for ObvhsBvh2<'_> {
