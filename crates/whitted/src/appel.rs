@@ -29,7 +29,8 @@ impl<'a> Lighting<'a> {
     /// ```
     ///
     /// `n` is the unit shading normal on the eye's side; `to_eye` is unit and points away from the
-    /// surface. No shadow ray is cast to a light behind the surface.
+    /// surface. vis(i) is asked last: no shadow ray is cast to a light that would add nothing, because
+    /// it is behind the surface or makes only a highlight that the eye does not see.
     ///
     /// Slides « Élimination des parties cachées [Appel 68] », « Modèle Local : calcul des ombres
     /// portées ».
@@ -53,14 +54,20 @@ impl<'a> Lighting<'a> {
         if diffuse != Rgb::ZERO || material.rho_s != Rgb::ZERO {
             for source in &self.sources {
                 let shadow_ray = surface.spawn_to(source.position);
+                if n.dot(shadow_ray.direction) <= 0.0 {
+                    continue;
+                }
                 let distance = shadow_ray.direction.length();
                 let to_light = shadow_ray.direction * distance.recip();
                 let intensity = source.intensity_towards(to_light);
-                if n.dot(to_light) > 0.0 && intensity != Rgb::ZERO {
+                let g = attenuation(true, distance);
+                let unshadowed = local(intensity, g, &reflectance, n, to_light, to_eye);
+                if unshadowed != Rgb::ZERO {
                     let visible = !self.world.index.occluded(&shadow_ray, Interval::up_to(1.0));
                     recorder.shadow(&shadow_ray, visible);
-                    let g = attenuation(visible, distance);
-                    radiance += local(intensity, g, &reflectance, n, to_light, to_eye);
+                    if visible {
+                        radiance += unshadowed;
+                    }
                 }
             }
         }
