@@ -140,3 +140,63 @@ impl FourSlabs {
         (near, near.cmple(far).bitmask())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use rand_pcg::Pcg64;
+    use rand_pcg::rand_core::Rng;
+
+    use super::*;
+
+    /// Rays through a chosen point of a box, all numbers dyadic, so that the exact answer is known: the
+    /// point is at t = k. Its coordinates are on the box's planes or between them (corners, edges, faces,
+    /// the inside), the box may be flat or a point, and the ray may run in a plane (d = ±0) or start in
+    /// the box (k = 0) or far away.
+    #[test]
+    fn no_box_that_a_ray_meets_is_missed() {
+        let mut random = Pcg64::new(7, 1);
+        let mut below = move |count: u32| f64::from(random.next_u32() % count);
+        let scene = Bounds3 { min: DVec3::splat(-64.0), max: DVec3::splat(64.0) };
+        for offset in [0.0, f64::from(1 << 20)] {
+            let moved = Bounds3 { min: scene.min + offset, max: scene.max + offset };
+            let frame = Frame::of(moved);
+            for _ in 0..300_000 {
+                let (mut min, mut max, mut point, mut direction) =
+                    (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
+                for axis in 0..3 {
+                    min[axis] = offset + (below(4096) - 2048.0) / 64.0;
+                    max[axis] = min[axis] + below(4) * below(512) / 64.0;
+                    let inside = min[axis] + (max[axis] - min[axis]) * below(1025) / 1024.0;
+                    point[axis] = [min[axis], max[axis], inside][below(3) as usize];
+                    let component = (below(4096) - 2047.5) / 128.0;
+                    direction[axis] = [0.0, -0.0, component, component][below(4) as usize];
+                }
+                let steps = [0.0, below(64), 32768.0][below(3) as usize];
+                let ray = Ray::new(point - steps * direction, direction);
+                let mut boxes = FourBoxes::EMPTY;
+                boxes.set(2, frame.outwards(Bounds3 { min, max }));
+                let slabs = FourSlabs::new(&ray, &frame);
+                let (near, met) = slabs.enter(&boxes, slabs.parameter(steps));
+                if direction == DVec3::ZERO {
+                    continue;
+                }
+                assert_eq!(met, 0b100, "{min} {max} {ray:?}");
+                assert!(near.z <= slabs.parameter(steps));
+            }
+        }
+    }
+
+    #[test]
+    fn boxes_beside_behind_and_beyond_are_not_met() {
+        let frame = Frame::of(Bounds3 { min: DVec3::NEG_ONE, max: DVec3::ONE });
+        let slabs = FourSlabs::new(&Ray::new(DVec3::ZERO, DVec3::X), &frame);
+        let mut boxes = FourBoxes::EMPTY;
+        for (lane, center) in
+            [DVec3::new(0.5, 0.5, 0.0), DVec3::NEG_X * 0.5, DVec3::X * 0.8].into_iter().enumerate()
+        {
+            boxes.set(lane, frame.outwards(Bounds3 { min: center - 0.1, max: center + 0.1 }));
+        }
+        assert_eq!(slabs.enter(&boxes, slabs.parameter(0.6)).1, 0);
+        assert_eq!(slabs.enter(&boxes, slabs.parameter(0.75)).1, 0b100);
+    }
+}

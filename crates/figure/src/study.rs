@@ -98,12 +98,26 @@ impl Study {
         self.trial(label, knob).work
     }
 
-    /// The seconds of one contender.
+    /// The counted work at which a curve first comes down to an error: between two of its points by a
+    /// straight line in the logarithmic chart. `None` if it never does.
     ///
     /// # Panics
-    /// If there is no such contender.
-    pub fn seconds(&self, label: &str, knob: &str) -> Spread {
-        self.trial(label, knob).seconds
+    /// If there is no such curve or error.
+    pub fn work_at_error(&self, label: &str, name: &str, level: f64) -> Option<f64> {
+        let curve: Vec<&Trial> = self.trials.iter().filter(|trial| trial.label == label).collect();
+        assert!(!curve.is_empty(), "no contender {label:?}");
+        if curve[0].error(name) <= level {
+            return Some(curve[0].work as f64);
+        }
+        let [above, below] = curve.windows(2).find_map(|pair| {
+            let pair: [&Trial; 2] = pair.try_into().ok()?;
+            (pair[1].error(name) <= level).then_some(pair)
+        })?;
+        if below.error(name) <= 0.0 {
+            return Some(below.work as f64);
+        }
+        let part = (above.error(name) / level).ln() / (above.error(name) / below.error(name)).ln();
+        Some(above.work as f64 * (below.work as f64 / above.work as f64).powf(part))
     }
 
     /// The chart of the error of that name.
@@ -185,6 +199,10 @@ mod tests {
         assert_eq!(outcomes, [3.0, 2.5, 2.0]);
         assert_eq!(study.error("a", "2", "square"), 0.25);
         assert_eq!(study.work("b", "1"), 10);
+        // From (10, 1) to (20, 1/2) the line has the slope −1: (40 / 3, 3 / 4) lies on it.
+        let at = |label: &str, level: f64| study.work_at_error(label, "error", level);
+        assert!((at("a", 0.75).unwrap() - 40.0 / 3.0).abs() < 1e-12);
+        assert_eq!((at("a", 2.0), at("a", 0.1), at("b", 0.0)), (Some(10.0), None, Some(10.0)));
         let csv = study.table().to_csv();
         let header = "method,knob,tests,seconds_min,seconds_median,seconds_max,error,square";
         assert_eq!(csv.lines().next(), Some(header));
