@@ -5,7 +5,7 @@ use glam::DVec3;
 use lancer_accel::ObvhsBvh2;
 use lancer_core::generate::icosphere;
 use lancer_core::geometry::{Interval, Ray, Sphere};
-use lancer_core::intersector::{Intersector, LinearScan};
+use lancer_core::intersector::{Intersector, LinearScan, TestCounts};
 use lancer_core::scene::{MaterialId, Mesh, Scene, SphereObject};
 
 use crate::meshes::{OFFSETS, cube, moved, scene_of};
@@ -215,4 +215,22 @@ fn invalid_rays_meet_nothing() {
         assert_eq!(index.closest_hit(&ray, Interval::POSITIVE), None, "{ray:?}");
         assert!(!index.occluded(&ray, Interval::POSITIVE));
     }
+}
+
+/// The tree spares almost all primitive tests, and never makes one that brute force would not.
+#[test]
+fn the_tree_tests_few_primitives() {
+    let scene = scene_of(icosphere(4));
+    let (oracle, index) = (LinearScan::new(&scene), ObvhsBvh2::build(&scene));
+    let (mut all, mut few) = (TestCounts::default(), TestCounts::default());
+    let mut random = Random::new(29);
+    for _ in 0..500 {
+        let ray = aimed("at an edge", &scene.mesh, DVec3::ZERO, &mut random);
+        let before = few;
+        let wanted = oracle.walk(&ray, Interval::POSITIVE, &mut all, |_| false);
+        assert_eq!(index.walk(&ray, Interval::POSITIVE, &mut few, |_| false), wanted);
+        assert!(few.primitives > before.primitives && few.boxes > before.boxes, "a hit was tested");
+    }
+    assert_eq!((all.primitives, all.boxes), (500 * 5120, 0));
+    assert!(few.primitives < all.primitives / 200, "{few:?}");
 }
