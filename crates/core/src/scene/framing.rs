@@ -113,14 +113,16 @@ impl PointLight {
     /// A white light to the upper left of `camera`, as far from it as a fifth of the way to what it
     /// looks at. The camera must pass [`Camera::check`].
     ///
-    /// There it gives what a perpendicular white surface returns as 1: its intensity grows with the
-    /// square of the distance, so that small and large models come out equally bright.
+    /// There a perpendicular white surface returns 0.6, so that the front of a model, which is nearer,
+    /// is not too bright. The intensity grows with the square of the distance: small and large models
+    /// come out equally bright.
     pub fn beside(camera: &Camera) -> Self {
         let view = camera.look_at - camera.eye;
         let right = view.cross(camera.up).normalize();
         let up = right.cross(view.normalize());
         let position = camera.eye + 0.2 * view.length() * (up - right).normalize();
-        Self { position, intensity: Rgb::splat(position.distance_squared(camera.look_at)) }
+        let intensity = 0.6 * position.distance_squared(camera.look_at);
+        Self { position, intensity: Rgb::splat(intensity) }
     }
 }
 
@@ -165,7 +167,7 @@ mod tests {
             let camera = Camera::framing(Sphere { center: DVec3::ONE, radius });
             let light = PointLight::beside(&camera);
             let received = light.intensity / light.position.distance_squared(DVec3::ONE);
-            assert!((received - 1.0).abs().max_element() < 1e-14);
+            assert!((received - 0.6).abs().max_element() < 1e-14);
             let aside = light.position.distance(camera.eye) / camera.eye.distance(DVec3::ONE);
             assert!((aside - 0.2).abs() < 1e-14);
         }
