@@ -1,5 +1,6 @@
 //! Far, small, huge and grazed spheres against numbers computed to 40 digits or by hand.
 
+use chapter_1::naive::textbook_sphere;
 use glam::DVec3;
 use lancer_core::geometry::{Interval, Ray, Sphere};
 
@@ -7,14 +8,6 @@ use crate::random::Random;
 
 fn met(center: DVec3, radius: f64, origin: DVec3, direction: DVec3) -> Option<f64> {
     Sphere { center, radius }.intersect(&Ray::new(origin, direction), Interval::POSITIVE)
-}
-
-/// The formula of the textbooks.
-fn textbook(center: DVec3, radius: f64, origin: DVec3, direction: DVec3) -> Option<f64> {
-    let f = origin - center;
-    let (a, b) = (direction.length_squared(), f.dot(direction));
-    let discriminant = b * b - a * (f.length_squared() - radius * radius);
-    (discriminant >= 0.0).then(|| (-b - discriminant.sqrt()) / a)
 }
 
 /// eq:ray-sphere: a ray parallel to the axis at height h over the centre of a unit sphere meets it
@@ -48,7 +41,9 @@ fn the_textbook_formula_loses_the_far_sphere() {
         let (center, origin) = (DVec3::new(0.0, 0.0, distance), DVec3::new(x, y, 0.0));
         let direction = DVec3::Z;
         wrong += usize::from(met(center, 1.0, origin, direction).is_some() != inside);
-        naive_wrong += usize::from(textbook(center, 1.0, origin, direction).is_some() != inside);
+        let sphere = Sphere { center, radius: 1.0 };
+        let textbook = textbook_sphere(sphere, &Ray::new(origin, direction));
+        naive_wrong += usize::from(textbook.is_some() != inside);
     }
     assert_eq!(wrong, 0);
     assert!(naive_wrong > 50, "the textbook formula errs {naive_wrong} times in 1500");

@@ -2,7 +2,7 @@
 //! compare the course's own code with.
 
 use glam::DVec3;
-use lancer_core::geometry::Ray;
+use lancer_core::geometry::{Ray, Sphere};
 
 /// Whether a ray meets a triangle, after Möller and Trumbore, *Fast, Minimum Storage Ray/Triangle
 /// Intersection*, 1997.
@@ -49,4 +49,13 @@ fn by_signs(corners: [DVec3; 3], ray: &Ray, edge: impl Fn([f64; 3], [f64; 3]) ->
     let det = u + v + w;
     let mixed = (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0);
     !mixed && det != 0.0 && (u * a[2] + v * b[2] + w * c[2]) / det > 0.0
+}
+
+/// Where a ray enters a sphere, by the formula of the textbooks: its discriminant is the difference of
+/// two large numbers when the sphere is far away or small.
+pub fn textbook_sphere(sphere: Sphere, ray: &Ray) -> Option<f64> {
+    let f = ray.origin - sphere.center;
+    let (a, b) = (ray.direction.length_squared(), f.dot(ray.direction));
+    let discriminant = b * b - a * (f.length_squared() - sphere.radius * sphere.radius);
+    (discriminant >= 0.0).then(|| (-b - discriminant.sqrt()) / a)
 }

@@ -39,6 +39,20 @@ fn ids_and_names_are_unique() {
     assert_eq!(names.len(), 2 * FIGURES.len());
 }
 
+/// 0.1, eq:ray-sphere: the stable form loses no sphere in 64 bits, the textbook's does in 32.
+#[test]
+fn quadratic() {
+    let rows = rows(&made("0.1"));
+    let lost = |name: &str| -> f64 {
+        rows.iter()
+            .filter(|row| field(row, "solver") == name)
+            .map(|row| value(row, "lost_of_96"))
+            .sum()
+    };
+    assert_eq!(lost("stable, f64"), 0.0);
+    assert!(lost("textbook, f32") > 0.0);
+}
+
 /// 0.3, eq:ray-triangle: our test never leaks, Möller-Trumbore does at edges and at vertices.
 #[test]
 fn watertight() {

@@ -4,6 +4,7 @@ mod aliasing;
 mod depth;
 mod descartes;
 mod local_model;
+mod quadratic;
 mod ray_tree;
 mod watertight;
 
@@ -18,7 +19,8 @@ use lancer_figure::{Figure, Picture};
 use lancer_whitted::{RayCounts, Recorder, Settings, Whitted};
 
 /// All figures, in the lesson's order.
-pub const FIGURES: [Figure; 6] = [
+pub const FIGURES: [Figure; 7] = [
+    Figure { id: "0.1", name: "quadratic", make: quadratic::make },
     Figure { id: "0.3", name: "watertight", make: watertight::make },
     Figure { id: "1.2", name: "local-model", make: local_model::make },
     Figure { id: "1.5", name: "descartes", make: descartes::make },
