@@ -21,10 +21,10 @@ const RADIUS: f64 = 35.0 * SCALE;
 type Solver = fn(DVec3, DVec3) -> Option<f64>;
 
 const SOLVERS: [(&str, Solver); 4] = [
-    ("textbook, f32", textbook_f32),
-    ("stable, f32", stable_f32),
-    ("textbook, f64", |center, d| textbook_sphere(sphere(center), &Ray::new(DVec3::ZERO, d))),
-    ("stable, f64", |center, d| {
+    ("textbook f32", textbook_f32),
+    ("stable f32", stable_f32),
+    ("textbook f64", |center, d| textbook_sphere(sphere(center), &Ray::new(DVec3::ZERO, d))),
+    ("stable f64", |center, d| {
         sphere(center).intersect(&Ray::new(DVec3::ZERO, d), Interval::POSITIVE)
     }),
 ];
