@@ -35,11 +35,6 @@ impl Bounds3 {
     pub fn center(&self) -> DVec3 {
         0.5 * self.min + 0.5 * self.max
     }
-
-    /// The length of the diagonal.
-    pub fn diagonal(&self) -> f64 {
-        (self.max - self.min).length()
-    }
 }
 
 /// A ray prepared for conservative box tests.
