@@ -22,7 +22,7 @@ const CHAPTERS: [Chapter; 1] = [Chapter {
     number: "1",
     folder: "1-whitted",
     title: "1 Introduction au lancer de rayons",
-    figures: &chapter_1::figures::FIGURES,
+    figures: chapter_1::figures::FIGURES,
 }];
 
 /// Draws the course's figures, each with its data, and a page of all of them.

@@ -64,8 +64,13 @@ pub fn horizon() -> Scene {
 
 fn written(index: usize) -> Scene {
     let (name, text) = WRITTEN[index];
+    parsed(name, text)
+}
+
+/// A scene of the chapter's own, from its text.
+pub(crate) fn parsed(name: &str, text: &str) -> Scene {
     let loaded = parse_scene(text, name, Path::new(""));
-    loaded.expect("a test loads every scene of the chapter").scene
+    loaded.unwrap_or_else(|error| panic!("a test loads every scene of the chapter: {error}")).scene
 }
 
 /// Opens a scene by name; `level` is for generated ones.

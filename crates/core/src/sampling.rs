@@ -1,7 +1,9 @@
 //! Where in a pixel its samples lie. Every position follows from (seed, pixel, sample index) alone, so
 //! a picture does not depend on who renders which pixel when.
 
-use glam::DVec2;
+use std::f64::consts::TAU;
+
+use glam::{DVec2, DVec3};
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 
@@ -40,7 +42,7 @@ impl PixelSampling {
             Pattern::Regular => 0,
             Pattern::Jittered | Pattern::Owen => pixel_key(self.seed, x, y),
         };
-        let mut random = Pcg32::new(key, key);
+        let mut random = Uniform::with_key(key);
         let cells = grid(self.samples);
         (0..self.samples).map(move |index| {
             let cell = DVec2::new(f64::from(index % cells[0]), f64::from(index / cells[0]));
@@ -49,7 +51,7 @@ impl PixelSampling {
                 + match self.pattern {
                     Pattern::Regular => (cell + 0.5) / cells,
                     Pattern::Jittered => {
-                        (cell + DVec2::new(uniform(&mut random), uniform(&mut random))) / cells
+                        (cell + DVec2::new(random.number(), random.number())) / cells
                     }
                     Pattern::Owen => owen(index, key),
                 }
@@ -63,9 +65,35 @@ fn grid(samples: u32) -> [u32; 2] {
     [samples / rows, rows]
 }
 
-/// A number in [0, 1) with 53 random bits.
-fn uniform(random: &mut Pcg32) -> f64 {
-    (random.next_u64() >> 11) as f64 * (0.5 * f64::EPSILON)
+/// Independent random numbers of a pixel, or of anything else that has two coordinates: they follow
+/// from (seed, x, y) alone.
+#[derive(Clone, Debug)]
+pub struct Uniform(Pcg32);
+
+impl Uniform {
+    /// The numbers of (`seed`, `x`, `y`), from the first on.
+    pub fn new(seed: u64, x: u32, y: u32) -> Self {
+        Self::with_key(pixel_key(seed, x, y))
+    }
+
+    fn with_key(key: u64) -> Self {
+        Self(Pcg32::new(key, key))
+    }
+
+    /// The next number in [0, 1), with 53 random bits.
+    #[inline]
+    pub fn number(&mut self) -> f64 {
+        (self.0.next_u64() >> 11) as f64 * (0.5 * f64::EPSILON)
+    }
+
+    /// A unit vector, all directions being equally likely: a sphere's zones of equal height have equal
+    /// areas (Archimedes).
+    #[inline]
+    pub fn direction(&mut self) -> DVec3 {
+        let (z, (sin, cos)) = (2.0 * self.number() - 1.0, (TAU * self.number()).sin_cos());
+        let r = (1.0 - z * z).max(0.0).sqrt();
+        DVec3::new(r * cos, r * sin, z)
+    }
 }
 
 /// Point `index` of a pixel's Sobol sequence. The generator ends after 2^16 points; each further
@@ -149,6 +177,25 @@ mod tests {
         let points: Vec<DVec2> = sampling.points(0, 0).collect();
         assert_ne!(points[..4], points[1 << 16..]);
         assert!(points.iter().all(|p| p.min_element() >= 0.0 && p.max_element() < 1.0));
+    }
+
+    /// z and the square of the distance from the axis have the means 0 and 2/3, with standard deviations
+    /// √(1/3) and √(4/45); a false alarm in a million.
+    #[test]
+    fn directions_favour_none() {
+        let count = 100_000;
+        let mut random = Uniform::new(1, 2, 3);
+        let (mut mean, mut from_axes) = (DVec3::ZERO, DVec3::ZERO);
+        for _ in 0..count {
+            let d = random.direction();
+            assert!((d.length() - 1.0).abs() < 4.0 * f64::EPSILON);
+            mean += d / f64::from(count);
+            from_axes += (1.0 - d * d) / f64::from(count);
+        }
+        let z = 5.3 / f64::from(count).sqrt();
+        assert!(mean.abs().max_element() < z * (1.0_f64 / 3.0).sqrt(), "{mean}");
+        let off = (from_axes - 2.0 / 3.0).abs().max_element();
+        assert!(off < z * (4.0_f64 / 45.0).sqrt(), "{from_axes}");
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use crate::chart::Spread;
 use crate::data::{Table, Value};
+use crate::number::number;
 use crate::shape::Color;
 use crate::speed_error::{CurvePoint, MethodCurve, SpeedError};
 
@@ -120,6 +121,21 @@ impl Study {
         Some(above.work as f64 * (below.work as f64 / above.work as f64).powf(part))
     }
 
+    /// A sentence on what each curve takes to come down to an error, in the counted work per item
+    /// (`per` says of what: `"rays per pixel"`): the fair comparison of methods that differ in both.
+    ///
+    /// # Panics
+    /// If there is no such error.
+    pub fn at_equal_error(&self, name: &str, level: f64, items: f64, per: &str) -> String {
+        let curves = self.trials.chunk_by(|a, b| a.label == b.label).map(|trials| {
+            let label = &trials[0].label;
+            let work = self.work_at_error(label, name, level).map(|work| number(work / items));
+            format!("{label} {}", work.as_deref().unwrap_or("never"))
+        });
+        let curves: Vec<String> = curves.collect();
+        format!("{name} {} takes, in {per}: {}", number(level), curves.join(", "))
+    }
+
     /// The chart of the error of that name.
     ///
     /// # Panics
@@ -203,6 +219,8 @@ mod tests {
         let at = |label: &str, level: f64| study.work_at_error(label, "error", level);
         assert!((at("a", 0.75).unwrap() - 40.0 / 3.0).abs() < 1e-12);
         assert_eq!((at("a", 2.0), at("a", 0.1), at("b", 0.0)), (Some(10.0), None, Some(10.0)));
+        let sentence = study.at_equal_error("error", 0.75, 2.0, "tests per ray");
+        assert_eq!(sentence, "error 0.75 takes, in tests per ray: a 6.67, b 5");
         let csv = study.table().to_csv();
         let header = "method,knob,tests,seconds_min,seconds_median,seconds_max,error,square";
         assert_eq!(csv.lines().next(), Some(header));

@@ -154,13 +154,7 @@ pub fn make(effort: Effort) -> Finished {
         )
         .subtitle(format!("RMSE {error:.3}"))
     };
-    let at_equal_error = PATTERNS.map(|(_, name)| {
-        let pixels = zone_plate.size.pixels() as f64;
-        let samples = study.work_at_error(name, "RMSE", 0.02).map(|work| work / pixels);
-        format!("{name} {}", samples.map_or("never".to_owned(), |samples| format!("{samples:.1}")))
-    });
-    let at_equal_error =
-        format!("an RMSE of 0.02 takes, in samples per pixel: {}", at_equal_error.join(", "));
+    let pixels = zone_plate.size.pixels() as f64;
     let floor = Floor::new(effort);
     let plate = Plate::new("1.11", "Aliasing, and what jitter does to it", claim, holds)
         .panel(
@@ -180,7 +174,7 @@ pub fn make(effort: Effort) -> Finished {
                 .columns(2),
         )
 
-        .note("Equal error", at_equal_error)
+        .note("Equal error", study.at_equal_error("RMSE", 0.02, pixels, "samples per pixel"))
         .note(
             "Zone plate",
             "½ + ½ cos(k r²), r from the upper left corner; at three quarters of the side there is one \

@@ -149,12 +149,6 @@ pub fn make(effort: Effort) -> Finished {
             |a: &&(AtLimit, &str), b: &&(AtLimit, &str)| error(a.1).total_cmp(&error(b.1));
         LIMITS.iter().min_by(by_error).map_or("", |(_, name)| name)
     };
-    let at_equal_error = LIMITS.map(|(_, name)| {
-        let rays = study.work_at_error(name, "RMSE", 1e-3).map(|work| work / pixels);
-        format!("{name} {}", rays.map_or("never".to_owned(), |rays| format!("{rays:.1}")))
-    });
-    let at_equal_error =
-        format!("an RMSE of 10⁻³ takes, in rays per pixel: {}", at_equal_error.join(", "));
     let plate = Plate::new("1.7", "How deep to follow the rays", claim, holds)
         .panel(montage)
         .panel(at_depth_3)
@@ -165,7 +159,7 @@ pub fn make(effort: Effort) -> Finished {
              depth 5 {}",
             best(1), best(3), best(5)
         ))
-        .note("Equal error", at_equal_error)
+        .note("Equal error", study.at_equal_error("RMSE", 1e-3, pixels, "rays per pixel"))
         .note("Method", "algo:lr, eq:recursion; the work counts all rays, shadow rays included")
         .note("Settings", format!("scene whitted, {size}, 1 sample per pixel, no minimum weight"))
         .note("Reference", format!(

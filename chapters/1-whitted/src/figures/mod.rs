@@ -8,8 +8,12 @@ mod quadratic;
 mod ray_tree;
 mod watertight;
 
+use std::ops::AddAssign;
+
+use glam::DVec2;
 use lancer_accel::ObvhsBvh2;
 use lancer_core::Rgb;
+use lancer_core::geometry::Ray;
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::render::{Control, Rendering, render_pixels};
 use lancer_core::sampling::PixelSampling;
@@ -19,7 +23,7 @@ use lancer_figure::{Figure, Picture};
 use lancer_whitted::{RayCounts, Recorder, Settings, Whitted};
 
 /// All figures, in the lesson's order.
-pub const FIGURES: [Figure; 7] = [
+pub const FIGURES: &[Figure] = &[
     Figure { id: "0.1", name: "quadratic", make: quadratic::make },
     Figure { id: "0.3", name: "watertight", make: watertight::make },
     Figure { id: "1.2", name: "local-model", make: local_model::make },
@@ -35,8 +39,21 @@ fn shown(image: &Image) -> Picture {
     Picture::new(width, height, image.to_srgb8(0.0))
 }
 
+/// A picture of a scene: `radiance` along each ray through the picture; `counts` is anything that adds up.
+fn picture<C: Default + Send + AddAssign>(
+    scene: &Scene,
+    size: ImageSize,
+    sampling: PixelSampling,
+    radiance: impl Fn(&Ray, &mut C) -> Rgb + Sync,
+) -> Rendering<C> {
+    let rays = scene.camera.primary_rays(size);
+    let radiance = |film: DVec2, counts: &mut C| radiance(&rays.through(film.x, film.y), counts);
+    let rendering = render_pixels(size, sampling, Control::default(), radiance);
+    rendering.expect("nobody cancels a figure")
+}
+
 /// Whitted's method over a scene; `counts` is anything that follows the recursion.
-fn trace_picture<C: Recorder + Default + Send + std::ops::AddAssign>(
+fn trace_picture<C: Recorder + Default + Send + AddAssign>(
     scene: &Scene,
     settings: Settings,
     size: ImageSize,
@@ -44,12 +61,7 @@ fn trace_picture<C: Recorder + Default + Send + std::ops::AddAssign>(
 ) -> Rendering<C> {
     let index = ObvhsBvh2::build(scene);
     let method = Whitted::new(World { scene, index: &index }, settings);
-    let rays = scene.camera.primary_rays(size);
-    let radiance = |film: glam::DVec2, counts: &mut C| -> Rgb {
-        method.trace(&rays.through(film.x, film.y), counts)
-    };
-    let rendering = render_pixels(size, sampling, Control::default(), radiance);
-    rendering.expect("nobody cancels a figure")
+    picture(scene, size, sampling, |ray, counts| method.trace(ray, counts))
 }
 
 /// Whitted's method and its rays, one sample in the centre of each pixel.

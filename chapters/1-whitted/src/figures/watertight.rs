@@ -1,9 +1,9 @@
 //! 0.3: rays aimed at what triangles share, against three tests that all look right.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use lancer_core::generate::icosphere;
 use lancer_core::geometry::{Ray, Shear, intersect_triangle};
-use lancer_core::sampling::{Pattern, PixelSampling};
+use lancer_core::sampling::Uniform;
 use lancer_core::scene::Mesh;
 use lancer_figure::{
     BarChart, Color, Contender, Effort, Finished, Inset, Montage, Picture, Plate, Row, Study, Tile,
@@ -94,10 +94,8 @@ pub fn make(effort: Effort) -> Finished {
 
 /// Rays from around the middle of a closed mesh.
 fn aimed(mesh: &Mesh, aim: usize, count: usize) -> Vec<Ray> {
-    let sampling = PixelSampling { pattern: Pattern::Jittered, samples: 1, seed: 3 };
-    let mut numbers =
-        (0..).flat_map(|x| sampling.points(x, 0).map(DVec2::fract)).flat_map(|p| [p.x, p.y]);
-    let mut unit = move || numbers.next().unwrap_or_default();
+    let mut random = Uniform::new(3, aim as u32, 0);
+    let mut unit = move || random.number();
     (0..count)
         .map(|_| {
             let origin = DVec3::new(unit() - 0.5, unit() - 0.5, unit() - 0.5) * 0.6;
