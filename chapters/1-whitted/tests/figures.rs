@@ -136,6 +136,27 @@ fn depth() {
     }
 }
 
+/// 1.9: Whitted has none of the mirrored light; rays from the lamp, which know nothing of its image, bring
+/// all of it, and find the mirror as large as it is seen from the lamp.
+#[test]
+fn indirect() {
+    let rows = rows(&made("1.9"));
+    let last = rows.last().expect("the most light rays");
+    for row in &rows {
+        if field(row, "method") == "Whitted" {
+            assert_eq!(value(row, "mirrored_light"), 0.0);
+        }
+    }
+    // A rectangle's solid angle, from its corners seen along its normal, 1.9 away.
+    let corner = |x: f64, y: f64| (x * y / (1.9 * (x * x + y * y + 1.9 * 1.9).sqrt())).atan();
+    let (x, y) = ([-0.1, 1.9], [-2.25, -0.85]);
+    let exact = corner(x[1], y[1]) - corner(x[0], y[1]) - corner(x[1], y[0]) + corner(x[0], y[0]);
+    // Means of 65536 light rays, whose standard deviations are below their means and below twice their
+    // means: 5 deviations are a false alarm in a million.
+    assert!((value(last, "solid_angle") / exact - 1.0).abs() < 5.0 / 256.0);
+    assert!((value(last, "mirrored_light") - 1.0).abs() < 5.0 * 2.0 / 256.0);
+}
+
 /// 1.11: a pixel's samples cost what they cost in any layout, and more samples err less in each.
 #[test]
 fn aliasing() {

@@ -3,6 +3,7 @@
 mod aliasing;
 mod depth;
 mod descartes;
+mod indirect;
 mod local_model;
 mod quadratic;
 mod ray_tree;
@@ -30,6 +31,7 @@ pub const FIGURES: &[Figure] = &[
     Figure { id: "1.5", name: "descartes", make: descartes::make },
     Figure { id: "1.6", name: "ray-tree", make: ray_tree::make },
     Figure { id: "1.7", name: "depth", make: depth::make },
+    Figure { id: "1.9", name: "indirect", make: indirect::make },
     Figure { id: "1.11", name: "aliasing", make: aliasing::make },
 ];
 

@@ -1,4 +1,4 @@
-use glam::DVec3;
+use glam::{DMat3, DVec2, DVec3};
 
 use crate::geometry::Ray;
 use crate::image::ImageSize;
@@ -52,5 +52,55 @@ impl PrimaryRays {
     #[inline]
     pub fn through(&self, x: f64, y: f64) -> Ray {
         Ray::new(self.eye, (self.corner + x * self.across + y * self.down).normalize())
+    }
+
+    /// Where on the film a point of the world is seen, in pixels as for [`PrimaryRays::through`], beyond
+    /// the picture's edges as well; `None` for a point that is not in front of the eye.
+    pub fn film_point(&self, point: DVec3) -> Option<DVec2> {
+        let basis = DMat3::from_cols(self.across, self.down, self.corner);
+        // point − eye = depth · (x · across + y · down + corner)
+        let film = basis.inverse() * (point - self.eye);
+        (film.z > 0.0).then(|| film.truncate() / film.z)
+    }
+
+    /// The solid angle of a pixel over its area on the film, 1, in the unit direction `direction`: it
+    /// shrinks with the cube of the cosine to the view axis.
+    pub fn solid_angle(&self, direction: DVec3) -> f64 {
+        let axis = self.across.cross(self.down);
+        axis.length() * axis.normalize().dot(direction).abs().powi(3)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+
+    const CAMERA: Camera = Camera {
+        eye: DVec3::new(1.0, 2.0, 3.0),
+        look_at: DVec3::new(-2.0, 0.5, 1.0),
+        up: DVec3::Y,
+        fov: 70.0,
+    };
+
+    #[test]
+    fn a_point_is_seen_where_its_ray_passes() {
+        let rays = CAMERA.primary_rays(ImageSize::new(64, 48));
+        for (x, y) in [(0.0, 0.0), (0.5, 47.5), (32.0, 24.0), (80.0, -3.0)] {
+            let film = rays.film_point(rays.through(x, y).at(7.3)).unwrap();
+            assert!((film - DVec2::new(x, y)).length() < 1e-12, "{film}");
+            assert_eq!(rays.film_point(rays.through(x, y).at(-1.0)), None);
+        }
+    }
+
+    /// A square picture of opening angle 90° is a face of a cube around the eye: a sixth of 4π.
+    #[test]
+    fn solid_angles_add_up() {
+        let rays = Camera { fov: 90.0, ..CAMERA }.primary_rays(ImageSize::new(200, 200));
+        let pixels = (0..200 * 200).map(|i| (f64::from(i % 200) + 0.5, f64::from(i / 200) + 0.5));
+        let sum: f64 = pixels.map(|(x, y)| rays.solid_angle(rays.through(x, y).direction)).sum();
+        // The midpoint rule's own error is about (1/200)² / 24 of it.
+        assert!((sum / (4.0 * PI / 6.0) - 1.0).abs() < 1e-5, "{sum}");
     }
 }

@@ -1,0 +1,338 @@
+//! 1.9: a mirror lights the floor, and Whitted's method does not see it: lamps are aimed at directly.
+
+use glam::{DVec2, DVec3};
+use lancer_accel::ObvhsBvh2;
+use lancer_core::Rgb;
+use lancer_core::geometry::{Interval, Ray};
+use lancer_core::illumination::{Reflectance, attenuation, local};
+use lancer_core::image::{Image, ImageSize};
+use lancer_core::metric::{absolute_error_map, compare, rmse};
+use lancer_core::optics::reflect;
+use lancer_core::sampling::{Pattern, PixelSampling, Uniform};
+use lancer_core::scene::{MaterialId, PrimaryRays, Scene};
+use lancer_core::world::{SurfacePoint, World};
+use lancer_figure::{
+    Contender, Effort, Finished, HeatScale, Montage, Plate, Study, Tile, category_color,
+    method_color, number,
+};
+use lancer_whitted::{RayCounts, Settings};
+
+use super::{picture, shown, trace_picture};
+use crate::scenes;
+
+/// The mirror's lower corner, width and height, in the plane z = −1; it faces +z.
+const CORNER: DVec3 = DVec3::new(-1.0, 0.05, -1.0);
+const MIRROR: DVec2 = DVec2::new(2.0, 1.4);
+
+const SCENE: &str = "
+    background = [0.05, 0.06, 0.08]
+    ambient = 0.05
+    camera = { eye = [2.7, 2.3, 4.4], look_at = [0.1, 0.3, 0.2], fov = 42 }
+    material.mirror = { k_s = 0.9 }
+    material.floor = { rho_d = [0.62, 0.6, 0.56] }
+    material.frame = { rho_d = 0.08 }
+    material.ball = { rho_d = [0.75, 0.3, 0.1] }
+    light = [{ position = [-0.9, 2.3, 0.9], intensity = 5 }]
+    sphere = [{ center = [0.4, 0.32, 0.6], radius = 0.32, material = 'ball' }]
+    [[polygon]]
+    vertices = [[-1, 0.05, -1], [1, 0.05, -1], [1, 1.45, -1], [-1, 1.45, -1]]
+    material = 'mirror'
+    [[polygon]]
+    vertices = [[-1.08, 0, -1.02], [1.08, 0, -1.02], [1.08, 1.53, -1.02], [-1.08, 1.53, -1.02]]
+    material = 'frame'
+    [[polygon]]
+    vertices = [[-9, 0, 9], [9, 0, 9], [9, 0, -9], [-9, 0, -9]]
+    material = 'floor'";
+
+/// The scene with what its only mirror does to its only lamp.
+struct Stage<'a> {
+    world: World<'a>,
+    mirror: MaterialId,
+    lamp: DVec3,
+    intensity: Rgb,
+}
+
+impl<'a> Stage<'a> {
+    fn new(world: World<'a>) -> Self {
+        let lamp = world.scene.lights[0];
+        let faces = &world.scene.mesh.faces;
+        Self { world, mirror: faces[0].material, lamp: lamp.position, intensity: lamp.intensity }
+    }
+
+    fn k_s(&self) -> Rgb {
+        self.world.scene.material(self.mirror).k_s
+    }
+
+    fn surface(&self, ray: &Ray) -> Option<SurfacePoint> {
+        let hit = self.world.index.closest_hit(ray, Interval::POSITIVE)?;
+        Some(self.world.scene.surface_at(ray, &hit))
+    }
+
+    fn reaches(&self, surface: &SurfacePoint, target: DVec3) -> bool {
+        !self.world.index.occluded(&surface.spawn_to(target), Interval::up_to(1.0))
+    }
+
+    /// Where the mirror ray towards the image of `point` meets the mirror, if nothing is in its way and
+    /// the mirror sends it on to `point`.
+    fn by_way_of_mirror(&self, surface: &SurfacePoint, point: DVec3) -> bool {
+        let mirrored = self.surface(&surface.spawn(image_of(point) - surface.position));
+        mirrored.is_some_and(|q| q.material == self.mirror && self.reaches(&q, point))
+    }
+
+    fn diffuse(&self, surface: &SurfacePoint) -> Rgb {
+        let material = self.world.scene.material(surface.material);
+        material.rho_d.at(surface.position, surface.geometric_normal)
+    }
+
+    /// What the eye sees along a ray of the light that comes by way of the mirror: eq:local for the
+    /// lamp's mirror image, wherever the mirror shows it.
+    fn mirrored_light(&self, ray: &Ray) -> Rgb {
+        let Some(surface) = self.surface(ray) else { return Rgb::ZERO };
+        let n = surface.shading_normal_towards(-ray.direction);
+        if surface.material == self.mirror {
+            let seen = surface.spawn(reflect(ray.direction, n));
+            return self.k_s() * self.mirrored_light(&seen);
+        }
+        if !self.by_way_of_mirror(&surface, self.lamp) {
+            return Rgb::ZERO;
+        }
+        let to_image = image_of(self.lamp) - surface.position;
+        let g = attenuation(true, to_image.length());
+        let diffuse = self.diffuse(&surface);
+        let matte = Reflectance { diffuse, specular: Rgb::ZERO, shininess: 1.0 };
+        local(self.k_s() * self.intensity, g, &matte, n, to_image.normalize(), -ray.direction)
+    }
+}
+
+/// The mirror image of a point.
+fn image_of(point: DVec3) -> DVec3 {
+    DVec3 { z: 2.0 * CORNER.z - point.z, ..point }
+}
+
+/// The light that leaves the lamp towards the mirror, followed forwards to the film.
+struct Forward {
+    /// Radiances, row by row.
+    film: Vec<Rgb>,
+    /// All rays cast.
+    rays: u64,
+    /// The solid angle of the mirror seen from the lamp, as the light rays found it.
+    solid_angle: f64,
+}
+
+/// The film of one picture, and the eye before it.
+struct Film {
+    rays: PrimaryRays,
+    size: ImageSize,
+    eye: DVec3,
+}
+
+impl Film {
+    /// The pixel on which a point is seen.
+    fn pixel(&self, point: DVec3) -> Option<usize> {
+        let at = self.rays.film_point(point)?.floor();
+        let [width, height] = [self.size.width, self.size.height].map(f64::from);
+        let inside = at.x >= 0.0 && at.x < width && at.y >= 0.0 && at.y < height;
+        inside.then_some((at.y * width + at.x) as usize)
+    }
+
+    /// What light of unit power on a white surface of normal `n` at `point` adds to its pixel: the
+    /// radiance of the surface that the pixel covers.
+    fn splat(&self, point: DVec3, n: DVec3) -> f64 {
+        let to_eye = self.eye - point;
+        let direction = to_eye.normalize();
+        n.dot(direction) / (to_eye.length_squared() * self.rays.solid_angle(-direction))
+    }
+}
+
+/// Sends `count` light rays from the lamp to random points of the mirror, and connects the surfaces that
+/// they meet then with the eye: directly, and by way of the mirror.
+fn forward(stage: &Stage, film: &Film, count: u32) -> Forward {
+    let mut radiances = vec![Rgb::ZERO; film.size.pixels()];
+    let (mut traced, mut solid_angle) = (0, 0.0);
+    let mut random = Uniform::new(9, 0, 0);
+    for _ in 0..count {
+        let across = DVec2::new(random.number(), random.number()) * MIRROR;
+        let to_mirror = CORNER + across.extend(0.0) - stage.lamp;
+        let direction = to_mirror.normalize();
+        let area = MIRROR.x * MIRROR.y / f64::from(count);
+        let cone = area * direction.z.abs() / to_mirror.length_squared();
+        solid_angle += cone;
+        traced += 1;
+        let light = stage.surface(&Ray::new(stage.lamp, direction));
+        let Some(mirror) = light.filter(|q| q.material == stage.mirror) else { continue };
+        let onwards = reflect(direction, DVec3::Z);
+        traced += 1;
+        let Some(surface) = stage.surface(&mirror.spawn(onwards)) else { continue };
+        let carried = stage.diffuse(&surface) * stage.k_s() * stage.intensity * cone;
+        let n = surface.shading_normal_towards(-onwards);
+        // The mirror shows the surface's image, whose normal is mirrored as well.
+        let image = (image_of(surface.position), DVec3 { z: -n.z, ..n });
+        for (by_mirror, (point, n)) in [(false, (surface.position, n)), (true, image)] {
+            let Some(pixel) = film.pixel(point).filter(|_| n.dot(film.eye - point) > 0.0) else {
+                continue;
+            };
+            traced += 1;
+            let (visible, share) = if by_mirror {
+                (stage.by_way_of_mirror(&surface, film.eye), stage.k_s())
+            } else {
+                (stage.reaches(&surface, film.eye), Rgb::ONE)
+            };
+            if visible {
+                radiances[pixel] += carried * share * film.splat(point, n);
+            }
+        }
+    }
+    Forward { film: radiances, rays: traced, solid_angle }
+}
+
+const WHITTED: &str = "Whitted";
+const FORWARD: &str = "Whitted + light rays";
+const SAMPLES: [u32; 3] = [1, 4, 16];
+
+/// What a contender made.
+struct Outcome {
+    image: Image,
+    /// The samples per pixel of Whitted's part.
+    samples: u32,
+    solid_angle: f64,
+}
+
+pub fn make(effort: Effort) -> Finished {
+    let scene = scenes::parsed("indirect", SCENE);
+    let index = ObvhsBvh2::build(&scene);
+    let stage = Stage::new(World { scene: &scene, index: &index });
+    let size = effort.pick(ImageSize::new(72, 54), ImageSize::new(400, 300));
+    let film = Film { rays: scene.camera.primary_rays(size), size, eye: scene.camera.eye };
+    let sampling = |samples, seed| PixelSampling { pattern: Pattern::Owen, samples, seed };
+    let whitted = |scene: &Scene, samples| {
+        let sampling = sampling(samples, 5);
+        let rendering = trace_picture::<RayCounts>(scene, Settings::default(), size, sampling);
+        (rendering.image, rendering.counts.total())
+    };
+    let (most, seed) = (effort.pick(16, 32), 5);
+    let mirrored = |seed| {
+        let radiance = |ray: &Ray, _: &mut u64| stage.mirrored_light(ray);
+        picture(&scene, size, sampling(most, seed), radiance).image
+    };
+    let missing = mirrored(seed);
+    let reference = pixelwise(&whitted(&scene, most).0, &missing, |a, b| a + b);
+    let residual = rmse(&missing, &mirrored(seed + 1)).expect("pictures of one size");
+
+    let run = |samples, light_rays| {
+        let (image, rays) = whitted(&scene, samples);
+        if light_rays == 0 {
+            return (Outcome { image, samples, solid_angle: f64::NAN }, rays);
+        }
+        let light = forward(&stage, &film, light_rays);
+        let radiances = light.film.iter().map(|radiance| radiance.as_vec3().to_array());
+        let image = pixelwise(&image, &Image::from_pixels(size, radiances.collect()), |a, b| a + b);
+        (Outcome { image, samples, solid_angle: light.solid_angle }, rays + light.rays)
+    };
+    let settings =
+        SAMPLES.map(|samples| (WHITTED, method_color("whitted"), samples, 0)).into_iter();
+    let light_rays = effort.pick([1 << 8, 1 << 12, 1 << 16], [1 << 14, 1 << 17, 1 << 20]);
+    let settings =
+        settings.chain(light_rays.map(|count| (FORWARD, category_color(3), SAMPLES[1], count)));
+    let contenders = settings
+        .map(|(label, color, samples, light_rays)| Contender {
+            label: label.to_owned(),
+            color,
+            knob: match light_rays {
+                0 => format!("{samples} per pixel"),
+                _ => format!("{light_rays} from the lamp"),
+            },
+            run: Box::new(move || run(samples, light_rays)),
+        })
+        .collect();
+
+    // What the mirror adds to a picture beside itself, as a share of what it should add.
+    let beside = beside_the_mirror(&film);
+    let mut blind = scene.clone();
+    blind.materials[stage.mirror.0 as usize].k_s = Rgb::ZERO;
+    let total =
+        |image: &Image| beside.iter().map(|&[x, y]| image.get(x, y).element_sum()).sum::<f64>();
+    let share = |outcome: &Outcome| {
+        let without = whitted(&blind, outcome.samples).0;
+        total(&pixelwise(&outcome.image, &without, |a, b| a - b)) / total(&missing)
+    };
+    let (study, outcomes) = Study::measure("rays", 3, contenders, |outcome: &Outcome| {
+        let errors = compare(&reference, &outcome.image).expect("pictures of one size").named();
+        let more = [("mirrored_light", share(outcome)), ("solid_angle", outcome.solid_angle)];
+        errors.into_iter().chain(more).collect()
+    });
+
+    let many = format!("{} from the lamp", light_rays[2]);
+    let shares = SAMPLES.map(|n| study.error(WHITTED, &format!("{n} per pixel"), "mirrored_light"));
+    let found = study.error(FORWARD, &many, "mirrored_light");
+    let holds = shares == [0.0; 3] && (found - 1.0).abs() < 0.05;
+    let claim = format!(
+        "Of the light that the mirror sends to the floor and to the ball, Whitted's picture has {} %, with \
+         1 sample per pixel or with 16; rays followed from the lamp bring {:.1} % of it.",
+        number(100.0 * shares[2]),
+        100.0 * found,
+    );
+
+    let tile = |title: &str, image: &Image, knob: &str| {
+        let label = if title.starts_with(FORWARD) { FORWARD } else { WHITTED };
+        let color = if label == FORWARD { category_color(3) } else { method_color("whitted") };
+        let error = number(study.error(label, knob, "RMSE"));
+        Tile::new(title, shown(image)).subtitle(format!("{knob}, RMSE {error}")).color(color)
+    };
+    let pictures = Montage::new()
+        .tile(tile(WHITTED, &outcomes[2].image, "16 per pixel"))
+        .tile(tile(FORWARD, &outcomes[5].image, &many))
+        .tile(
+            Tile::new("reference", shown(&reference))
+                .color(method_color("reference"))
+                .subtitle("closed form"),
+        );
+    let scale = HeatScale::log("|error|", 1e-3, 1.0);
+    let errors = |title: &str, image: &Image| {
+        let map = absolute_error_map(&reference, image).expect("pictures of one size");
+        Tile::new(title, scale.paint(size.width, size.height, &map))
+    };
+    let maps = Montage::new()
+        .tile(errors("error: Whitted", &outcomes[2].image))
+        .tile(errors(&format!("error: {} light rays", light_rays[1]), &outcomes[4].image))
+        .tile(errors(&format!("error: {} light rays", light_rays[2]), &outcomes[5].image))
+        .color_bar(&scale);
+    let plate = Plate::new("1.9", "A mirror that lights nothing", claim, holds)
+        .panel(pictures)
+        .panel(maps)
+        .panel(study.chart("RMSE").slope(-0.5, "slope −1/2, random").reference_error(residual))
+        .note("« Pas d'éclairage indirect »", "the lamps are aimed at directly: a surface asks for the lamp, \
+             never for the lamp's image in a mirror, and more samples ask the same question again")
+        .note("Equal error", study.at_equal_error("RMSE", 0.02, size.pixels() as f64, "rays per pixel"))
+        .note("Method", format!(
+            "algo:lr; light rays start at the lamp towards random points of the mirror, and where they end \
+             a ray is cast to the eye, directly and by way of the mirror; {} samples per pixel for the rest", SAMPLES[1]
+        ))
+        .note("Reference", format!(
+            "closed form: a plane mirror's light is eq:local for the lamp's image behind it, times k_s, where the \
+             mirror shows it; {most} samples per pixel, whose own RMSE is {}", number(residual)
+        ));
+    Finished { plate, data: study.table() }
+}
+
+/// Two pictures' pixels combined.
+fn pixelwise(a: &Image, b: &Image, combine: impl Fn(f32, f32) -> f32) -> Image {
+    let pixels = a.pixels().iter().zip(b.pixels());
+    let pixels = pixels.map(|(a, b)| [0, 1, 2].map(|channel| combine(a[channel], b[channel])));
+    Image::from_pixels(a.size(), pixels.collect())
+}
+
+/// The pixels on which the mirror is not seen.
+fn beside_the_mirror(film: &Film) -> Vec<[u32; 2]> {
+    let corners = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE].map(|corner| {
+        let seen = film.rays.film_point(CORNER + (corner * MIRROR).extend(0.0));
+        seen.expect("the mirror is before the camera")
+    });
+    let low = corners.into_iter().fold(DVec2::INFINITY, DVec2::min);
+    let high = corners.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max);
+    let pixels = (0..film.size.height).flat_map(|y| (0..film.size.width).map(move |x| [x, y]));
+    let is_beside = |[x, y]: [u32; 2]| {
+        let corner = DVec2::new(f64::from(x), f64::from(y));
+        (corner + 1.0).cmplt(low).any() || corner.cmpgt(high).any()
+    };
+    pixels.filter(|&pixel| is_beside(pixel)).collect()
+}
