@@ -17,7 +17,7 @@ use lancer_figure::{
 };
 use lancer_whitted::{RayCounts, Settings};
 
-use super::{picture, shown, trace_picture};
+use super::{picture, pixelwise, shown, trace_picture};
 use crate::scenes;
 
 /// The mirror's lower corner, width and height, in the plane z = −1; it faces +z.
@@ -312,13 +312,6 @@ pub fn make(effort: Effort) -> Finished {
              mirror shows it; {most} samples per pixel, whose own RMSE is {}", number(residual)
         ));
     Finished { plate, data: study.table() }
-}
-
-/// Two pictures' pixels combined.
-fn pixelwise(a: &Image, b: &Image, combine: impl Fn(f32, f32) -> f32) -> Image {
-    let pixels = a.pixels().iter().zip(b.pixels());
-    let pixels = pixels.map(|(a, b)| [0, 1, 2].map(|channel| combine(a[channel], b[channel])));
-    Image::from_pixels(a.size(), pixels.collect())
 }
 
 /// The pixels on which the mirror is not seen.

@@ -3,6 +3,7 @@
 mod aliasing;
 mod depth;
 mod descartes;
+mod diffuse;
 mod indirect;
 mod local_model;
 mod quadratic;
@@ -32,6 +33,7 @@ pub const FIGURES: &[Figure] = &[
     Figure { id: "1.6", name: "ray-tree", make: ray_tree::make },
     Figure { id: "1.7", name: "depth", make: depth::make },
     Figure { id: "1.9", name: "indirect", make: indirect::make },
+    Figure { id: "1.10", name: "diffuse", make: diffuse::make },
     Figure { id: "1.11", name: "aliasing", make: aliasing::make },
 ];
 
@@ -39,6 +41,13 @@ pub const FIGURES: &[Figure] = &[
 fn shown(image: &Image) -> Picture {
     let ImageSize { width, height, .. } = image.size();
     Picture::new(width, height, image.to_srgb8(0.0))
+}
+
+/// Two pictures' pixels combined.
+fn pixelwise(a: &Image, b: &Image, combine: impl Fn(f32, f32) -> f32) -> Image {
+    let pixels = a.pixels().iter().zip(b.pixels());
+    let pixels = pixels.map(|(a, b)| [0, 1, 2].map(|channel| combine(a[channel], b[channel])));
+    Image::from_pixels(a.size(), pixels.collect())
 }
 
 /// A picture of a scene: `radiance` along each ray through the picture; `counts` is anything that adds up.
