@@ -1,5 +1,7 @@
 //! Chapter 1 against sums that can be written down.
 
+use std::f64::consts::PI;
+
 use glam::DVec3;
 use lancer_core::Rgb;
 use lancer_core::geometry::{Ray, Sphere};
@@ -217,7 +219,7 @@ fn glass_of_index_one_is_invisible() {
 }
 
 /// An area light counts as a point of the same power with the same cosine: from far away both agree,
-/// E = L A cos cos' / d², and nothing shines backwards.
+/// a white surface there has the radiance L A cos cos' / (π d²), and nothing shines backwards.
 #[test]
 fn an_area_light_is_a_point_at_its_centroid() {
     let mut scene = scene_of(Mesh::default());
@@ -241,10 +243,10 @@ fn an_area_light_is_a_point_at_its_centroid() {
 
     let look = |x: f64| trace(&scene, UNLIMITED, Ray::new(DVec3::new(x, 0.5, 0.0), DVec3::NEG_Y));
     let (below, counts) = look(0.0);
-    assert!((below.x - 100.0 * 0.5 / 100.0).abs() < 1e-11, "{below}");
+    assert!((below.x - 100.0 * 0.5 / (100.0 * PI)).abs() < 1e-11, "{below}");
     assert_eq!(counts.shadow, 1);
     let (aside, _) = look(10.0);
-    assert!((aside.x - 50.0 * 0.5 / 200.0).abs() < 1e-11, "{aside}");
+    assert!((aside.x - 50.0 * 0.5 / (200.0 * PI)).abs() < 1e-11, "{aside}");
     // Above the light its own face stands in the way of nothing: it does not shine there at all.
     plate(&mut scene, 20.0, -1.0, 0);
     let ceiling = trace(&scene, UNLIMITED, Ray::new(DVec3::new(0.0, 19.0, 0.0), DVec3::Y));

@@ -1,5 +1,7 @@
 //! A scene with an index of it, and what a hit tells about the surface there.
 
+use std::f64::consts::PI;
+
 use glam::DVec3;
 
 use crate::Rgb;
@@ -179,7 +181,7 @@ impl SurfacePoint {
 pub struct PointSource {
     /// Where it stands.
     pub position: DVec3,
-    /// Power per solid angle, in the brightest direction.
+    /// I_i of [`PointLight::intensity`](crate::scene::PointLight::intensity), in the brightest direction.
     pub intensity: Rgb,
     /// For an emitting face its unit normal, the brightest direction; `None` shines everywhere alike.
     pub facing: Option<DVec3>,
@@ -199,8 +201,9 @@ impl PointSource {
 impl Scene {
     /// All lights as points: the point lights, then each emitting face.
     ///
-    /// A face of area A and radiance L becomes a source of intensity L·A·cos θ at its centroid: the
-    /// same power π·L·A with the same cosine, so that only its size, the penumbra, is lost. It stands
+    /// A face of area A and radiance L becomes a source of intensity L·A·cos θ / π at its centroid (the
+    /// same power with the same cosine, so that only its size, the penumbra, is lost): π, because a
+    /// white surface that sees the radiance L all around sends back L. It stands
     /// off the face, on the side it shines to, by more than a shadow ray from anywhere in the scene can
     /// err at its end.
     pub fn point_sources(&self) -> Vec<PointSource> {
@@ -242,7 +245,7 @@ impl Scene {
                 let centroid = moment / area;
                 Some(PointSource {
                     position: centroid + gamma(SHADOW_END) * reach * n,
-                    intensity: self.material(face.material).emission * area,
+                    intensity: self.material(face.material).emission * (area / PI),
                     facing: Some(n),
                 })
             })

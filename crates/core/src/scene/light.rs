@@ -7,6 +7,9 @@ use crate::Rgb;
 pub struct PointLight {
     /// Where it stands.
     pub position: DVec3,
-    /// I_i of `eq:local`: power per solid angle, so that a surface at distance d receives I_i / d².
+    /// I_i of `eq:local`: the radiance of a white surface (ρ_d = 1) that faces the light at distance 1.
+    ///
+    /// That is the power per solid angle over π: a matte surface spreads what it receives over all
+    /// directions, so that ρ_d is the share of the light that it sends back.
     pub intensity: Rgb,
 }

@@ -19,7 +19,7 @@ pub struct MaterialId(pub u32);
 /// | ε     | `emission`        | added to what leaves the surface           |
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
-    /// Diffuse reflectance, per channel.
+    /// Diffuse reflectance, per channel: the share of the light received that is sent back, 0 to 1.
     pub rho_d: Pigment,
     /// Weight of the highlight, per channel.
     pub rho_s: Rgb,
