@@ -81,6 +81,26 @@ fn local_model() {
     assert!(shadows < 0.0 && -shadows < diffuse + specular);
 }
 
+/// 1.4, eq:attenuation: 1 / d² for a point, and for a square lamp 1 away its midpoint in place of Lambert's
+/// 0.752274688454107 / π; four midpoints err less.
+#[test]
+fn inverse_square() {
+    let rows = rows(&made("1.4"));
+    let at = |lamp: &str, distance: f64, points: f64| {
+        let found = rows.iter().find(|row| {
+            (field(row, "lamp"), value(row, "distance"), value(row, "points"))
+                == (lamp, distance, points)
+        });
+        found.expect("a row")
+    };
+    assert!((value(at("point", 64.0, 1.0), "radiance") * 4096.0 - 1.0).abs() < 1e-13);
+    let square = at("square", 1.0, 1.0);
+    let exact = 0.752274688454107 / std::f64::consts::PI;
+    assert!((value(square, "exact") / exact - 1.0).abs() < 1e-13);
+    assert!((value(square, "radiance") * std::f64::consts::PI - 1.0).abs() < 1e-12);
+    assert!(value(at("square", 1.0, 4.0), "error") < 0.3 * value(square, "error"));
+}
+
 /// 1.5, eq:descartes at the table's own angles.
 #[test]
 fn descartes() {

@@ -5,6 +5,7 @@ mod depth;
 mod descartes;
 mod diffuse;
 mod indirect;
+mod inverse_square;
 mod local_model;
 mod quadratic;
 mod ray_tree;
@@ -29,6 +30,7 @@ pub const FIGURES: &[Figure] = &[
     Figure { id: "0.1", name: "quadratic", make: quadratic::make },
     Figure { id: "0.3", name: "watertight", make: watertight::make },
     Figure { id: "1.2", name: "local-model", make: local_model::make },
+    Figure { id: "1.4", name: "inverse-square", make: inverse_square::make },
     Figure { id: "1.5", name: "descartes", make: descartes::make },
     Figure { id: "1.6", name: "ray-tree", make: ray_tree::make },
     Figure { id: "1.7", name: "depth", make: depth::make },
