@@ -62,7 +62,7 @@ impl Tile {
     #[inline]
     pub fn set(&mut self, x: u32, y: u32, radiance: Rgb) {
         let index = (y - self.y) as usize * self.size.width as usize + (x - self.x) as usize;
-        self.pixels[index] = radiance.as_vec3().to_array();
+        self.pixels[index] = radiance.to_array().map(narrow);
     }
 
     /// Sets every pixel by its column and row in the picture; stops early when cancelled, since a pixel
@@ -76,6 +76,16 @@ impl Tile {
                 self.set(x, y, pixel(x, y));
             }
         }
+    }
+}
+
+/// The nearest `f32`. A radiance beyond its range, next to a lamp, becomes the largest number there is;
+/// what is not finite stays so, to be counted.
+fn narrow(channel: f64) -> f32 {
+    if channel.is_finite() {
+        channel.clamp(f32::MIN.into(), f32::MAX.into()) as f32
+    } else {
+        channel as f32
     }
 }
 

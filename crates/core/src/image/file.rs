@@ -1,5 +1,5 @@
-use std::fs;
-use std::io::{self, Cursor, ErrorKind};
+use std::fs::File;
+use std::io::{self, BufReader, Cursor, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use ::image::{DynamicImage, ImageFormat, ImageReader, Rgb32FImage, RgbImage};
@@ -57,12 +57,12 @@ pub enum ImageError {
         source: io::Error,
     },
     /// The bytes are no whole picture of the format, or one that takes more than 512 MiB.
-    #[error("cannot decode `{}`: it is damaged, of another format than its name tells, or too large (512 MiB); make it anew", path.display())]
+    #[error("cannot decode `{}`: it is damaged, of another format than its name tells, or too large (512 MiB): {reason}; make it anew", path.display())]
     Decode {
         /// The picture file.
         path: PathBuf,
         /// What the decoder says.
-        source: ::image::ImageError,
+        reason: ::image::ImageError,
     },
     /// The file holds a picture of a size that we refuse.
     #[error("cannot read `{}`", path.display())]
@@ -115,17 +115,19 @@ pub fn check_target(path: impl AsRef<Path>) -> Result<(), ImageError> {
 pub fn load(path: impl AsRef<Path>) -> Result<Image, ImageError> {
     let path = path.as_ref();
     let format = format_of(path)?;
-    let bytes = fs::read(path).map_err(|source| {
+    if path.is_dir() {
+        return Err(ImageError::IsFolder { path: path.into() });
+    }
+    let file = File::open(path).map_err(|source| {
         let path = path.to_owned();
         match source.kind() {
             ErrorKind::NotFound | ErrorKind::NotADirectory => ImageError::Missing { path },
-            _ if path.is_dir() => ImageError::IsFolder { path },
             _ => ImageError::Read { path, source },
         }
     })?;
-    let decoded = ImageReader::with_format(Cursor::new(bytes), format)
+    let decoded = ImageReader::with_format(BufReader::new(file), format)
         .decode()
-        .map_err(|source| ImageError::Decode { path: path.into(), source })?;
+        .map_err(|reason| ImageError::Decode { path: path.into(), reason })?;
     let size = ImageSize::checked(decoded.width().into(), decoded.height().into())
         .map_err(|source| ImageError::Size { path: path.into(), source })?;
     Ok(Image::from_pixels(size, linear_pixels(decoded)))
@@ -169,6 +171,8 @@ fn linear_pixels(decoded: DynamicImage) -> Vec<[f32; 3]> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     #[test]
