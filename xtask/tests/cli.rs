@@ -257,6 +257,22 @@ fn odd_scenes_are_drawn_with_a_warning() {
     ");
 }
 
+/// A lamp so bright that some numbers overflow: the picture is there to be looked at, and the exit
+/// code says what it is worth.
+#[test]
+fn pixels_that_are_not_finite_end_in_failure() {
+    let folder = folder(&[("corner.obj", CORNER.as_bytes())]);
+    let line = ["render", "corner.obj", "--size=9x9", "--out=new.png", "--light=1,1,1,1.7e308"];
+    let output = command(&folder, &line).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let error = text(&output.stderr);
+    let count =
+        error.strip_prefix("error: ").and_then(|rest| rest.split_once(" pixels are not finite"));
+    let count: usize = count.expect(&error).0.parse().unwrap();
+    assert!((1..81).contains(&count), "{error}");
+    assert!(load(folder.path().join("new.png")).is_ok());
+}
+
 #[test]
 fn wrong_targets_are_refused_before_the_work() {
     let folder = folder(&[]);

@@ -214,6 +214,28 @@ mod tests {
         if film.x + 0.3 * film.y < 9.7 { Rgb::ONE } else { Rgb::ZERO }
     }
 
+    /// A faulty sample is not spread over its neighbours, and a radiance beyond `f32` is no fault.
+    #[test]
+    fn a_nan_stains_one_pixel_and_a_huge_radiance_none() {
+        let size = ImageSize::new(9, 7);
+        for faulty in [f64::NAN, f64::INFINITY, 1e40, 1e300] {
+            let first = AtomicBool::new(true);
+            let radiance = |film: DVec2, _: &mut u64| {
+                let here = film.floor() == DVec2::new(4.0, 3.0);
+                Rgb::splat(if here && first.swap(false, Ordering::Relaxed) { faulty } else { 0.5 })
+            };
+            let sampling = PixelSampling { pattern: Pattern::Owen, samples: 4, seed: 1 };
+            let rendering = render_pixels(size, sampling, Control::default(), radiance).unwrap();
+            let defects = rendering.image.defects();
+            let expected = usize::from(!faulty.is_finite());
+            assert_eq!((defects.not_finite, defects.negative), (expected, 0), "{faulty}");
+            if expected == 0 {
+                assert_eq!(rendering.image.get(4, 3), Rgb::splat(f32::MAX.into()));
+            }
+            assert_eq!(rendering.image.get(5, 3), Rgb::splat(0.5));
+        }
+    }
+
     #[test]
     fn only_pixels_at_an_edge_are_refined_and_those_fully() {
         let size = ImageSize::new(16, 8);

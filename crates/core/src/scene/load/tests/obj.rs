@@ -285,6 +285,12 @@ fn normals_make_faces_smooth() {
         warnings(&loaded),
         ["a.obj:10: face with normals at some corners only is drawn flat"]
     );
+    // Of any length: 3-4-5.
+    for length in ["", "e-160", "e-310", "e300"] {
+        let text = format!("{TRIANGLE}vn 3{length} 0 -4{length}\nf 1//1 2//1 3//1\n");
+        let n = obj(text).expect("fine").scene.mesh.normals[0];
+        assert!((n - dvec3(0.6, 0.0, -0.8)).length() < 1e-12, "{n}");
+    }
     for bad in ["0 0 0", "nan 0 1", "0 inf 1", "0 0 1e400"] {
         assert_refused(
             obj(format!("{TRIANGLE}vn 0 0 1\nvn {bad}\nf 1//1 2//2 3//1\n")),
