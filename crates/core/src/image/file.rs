@@ -75,12 +75,12 @@ pub enum ImageError {
         bytes: u64,
     },
     /// The file holds a picture of a size that we refuse.
-    #[error("cannot read `{}`", path.display())]
+    #[error("cannot read `{}`: {reason}", path.display())]
     Size {
         /// The picture file.
         path: PathBuf,
         /// What is wrong with its size.
-        source: SizeError,
+        reason: SizeError,
     },
 }
 
@@ -143,7 +143,7 @@ pub fn load(path: impl AsRef<Path>) -> Result<Image, ImageError> {
     let decoder = reader.into_decoder().map_err(damaged)?;
     let (width, height) = decoder.dimensions();
     let size = ImageSize::checked(width.into(), height.into())
-        .map_err(|source| ImageError::Size { path: path.into(), source })?;
+        .map_err(|reason| ImageError::Size { path: path.into(), reason })?;
     let bytes = decoder.total_bytes().max((size.pixels() * size_of::<[f32; 3]>()) as u64);
     if bytes > MAX_BYTES {
         return Err(ImageError::TooLarge { path: path.into(), size, bytes });
