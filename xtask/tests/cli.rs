@@ -224,7 +224,7 @@ fn wrong_scenes_are_refused_with_a_cure() {
     ");
     assert_snapshot!(refused(&["empty.toml", "noise.toml", "typing.toml", "syntax.toml"]), @r"
     error: empty.toml: nothing to draw; add a [[sphere]], [[mesh]] or [[polygon]]
-    error: noise.toml: the text is not UTF-8; save the file as UTF-8
+    error: noise.toml:1: the text is not UTF-8; save the file as UTF-8
     error: typing.toml:1: unknown field `ambiant`; the known ones are ambient, camera, light, material, mesh, sphere, polygon, background
     error: syntax.toml:1: string values must be quoted, expected literal string; correct the value or the syntax
     ");

@@ -347,11 +347,16 @@ fn a_header_that_promises_too_much_is_refused() {
     let attribute = b"displayWindow\0box2i\0\x10\0\0\0";
     let at = bytes.windows(attribute.len()).position(|bytes| bytes == attribute).unwrap();
     let far_corner = at + attribute.len() + 8;
-    for (x, y) in [(30_000_i32, 30_000_i32), (i32::MAX / 2, 100), (12_000, 12_000)] {
+    // The corner is the last pixel of the window.
+    for (x, y, told) in [
+        (29_999_i32, 29_999_i32, "a picture of 30000x30000 is too large"),
+        (i32::MAX / 2, 100, "window size exceeding integer maximum"),
+        (11_999, 11_999, "1728000000 bytes, the maximum is 536870912"),
+    ] {
         bytes[far_corner..][..4].copy_from_slice(&x.to_le_bytes());
         bytes[far_corner + 4..][..4].copy_from_slice(&y.to_le_bytes());
         fs::write(&path, &bytes).unwrap();
-        assert_tells(&load(&path).unwrap_err(), &path, "too large");
+        assert_tells(&load(&path).unwrap_err(), &path, told);
     }
 }
 
