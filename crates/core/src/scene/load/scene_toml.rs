@@ -94,6 +94,11 @@ impl Source<'_> {
         let cure = match quoted.next() {
             Some(key) if message.starts_with("unknown field") => nearest(key, quoted),
             Some(_) if message.starts_with("missing field") => "add it".to_owned(),
+            _ if message == "invalid type: map, expected a sequence" => {
+                "there may be several: write its name in double brackets, such as [[light]]"
+                    .to_owned()
+            }
+            _ if message.ends_with("expected f64") => "write a number such as -1.5".to_owned(),
             _ => "correct the value or the syntax".to_owned(),
         };
         let problem = message.split(", expected one of").next().unwrap_or_default();

@@ -106,6 +106,7 @@ fn bad_values_are_refused_with_their_line() {
     let radiance = "it must be between 0 and 1e30";
     let index = "it must be between 0.001 and 1000";
     let syntax = "correct the value or the syntax";
+    let number = "write a number such as -1.5";
     let floor = "vertices = [[-2, 0, -2], [-2, 0, 2], [2, 0, 2], [2, 0, -2]]";
     for (good, bad, problem, cure) in [
         ("eye = [0, 1, 5]", "eye = [0, nan, 5]", "eye is [0.0, NaN, 5.0]", finite),
@@ -158,9 +159,9 @@ fn bad_values_are_refused_with_their_line() {
         ("emission = [5, 5, 4]", "emission = [5, 5, inf]", "emission is inf", radiance),
         ("radius = 1", "radius = 0", "radius is 0.0", positive),
         ("radius = 1", "radius = -1", "radius is -1.0", positive),
-        ("radius = 1", "radius = true", "invalid type: boolean `true`, expected f64", syntax),
-        ("radius = 1", "radius = [1]", "invalid type: sequence, expected f64", syntax),
-        ("radius = 1", "radius = '1'", "invalid type: string \"1\", expected f64", syntax),
+        ("radius = 1", "radius = true", "invalid type: boolean `true`, expected f64", number),
+        ("radius = 1", "radius = [1]", "invalid type: sequence, expected f64", number),
+        ("radius = 1", "radius = '1'", "invalid type: string \"1\", expected f64", number),
         (
             "material = 'glass'",
             "material = 1",
@@ -275,6 +276,11 @@ fn text_that_is_not_utf_8_is_refused_with_its_line() {
 fn missing_keys_are_named() {
     let text = "[camera]\neye = [0, 0, 1]\n[[sphere]]\ncenter = [0, 0, 0]\n";
     assert_refused(scene(text), "scenes/s.toml:1: missing field `look_at`; add it");
+    assert_refused(
+        scene("ambient = 1\n[light]\nposition = [0, 0, 0]\nintensity = 1\n"),
+        "scenes/s.toml:2: invalid type: map, expected a sequence; \
+         there may be several: write its name in double brackets, such as [[light]]",
+    );
 }
 
 #[test]
