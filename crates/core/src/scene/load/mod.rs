@@ -38,7 +38,7 @@ pub const MAX_CORNERS: usize = 100_000;
 /// The largest coordinate, in absolute value. Products of six of them are still finite.
 pub const MAX_COORDINATE: f64 = 1e50;
 
-/// The largest radiance or intensity. The sums and products that follow from it stay finite.
+/// The largest radiance or intensity of a file. Pictures are `f32` and end at 3e38.
 pub const MAX_RADIANCE: f64 = 1e30;
 
 /// The most bytes of a scene file, and of one line of an OBJ or MTL file.
