@@ -220,11 +220,11 @@ fn wrong_scenes_are_refused_with_a_cure() {
     error: half.obj: nothing to draw: no face with 3 corners; check that this is an OBJ file with `v` and `f` lines
     error: nan.obj:2: a coordinate is not finite, or beyond ±1e50; correct the number
     error: point.obj: nothing to draw: all vertices are at one point; check the vertices
-    error: outside.obj:4: mtllib `../secret.mtl` is outside the model's folder; put the library beside the model and name it without a path
+    error: outside.obj:4: mtllib `../secret.mtl` is outside this file's folder; put it beside this file or in a folder below, and name it from here
     ");
     assert_snapshot!(refused(&["empty.toml", "noise.toml", "typing.toml", "syntax.toml"]), @r"
     error: empty.toml: nothing to draw; add a [[sphere]], [[mesh]] or [[polygon]]
-    error: noise.toml: the text is not UTF-8; save the file as UTF-8
+    error: noise.toml:1: the text is not UTF-8; save the file as UTF-8
     error: typing.toml:1: unknown field `ambiant`; the known ones are ambient, camera, light, material, mesh, sphere, polygon, background
     error: syntax.toml:1: string values must be quoted, expected literal string; correct the value or the syntax
     ");
@@ -255,6 +255,22 @@ fn odd_scenes_are_drawn_with_a_warning() {
     warning: no_library.obj:2: material not defined in any library; its faces become light grey
     warning: dark.toml: no light: the picture will be black; add a [[light]], a material with emission or an ambient
     ");
+}
+
+/// A lamp so bright that some numbers overflow: the picture is there to be looked at, and the exit
+/// code says what it is worth.
+#[test]
+fn pixels_that_are_not_finite_end_in_failure() {
+    let folder = folder(&[("corner.obj", CORNER.as_bytes())]);
+    let line = ["render", "corner.obj", "--size=9x9", "--out=new.png", "--light=0.5,0.5,0.5,4e307"];
+    let output = command(&folder, &line).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let error = text(&output.stderr);
+    let count =
+        error.strip_prefix("error: ").and_then(|rest| rest.split_once(" pixels are not finite"));
+    let count: usize = count.expect(&error).0.parse().unwrap();
+    assert!((1..81).contains(&count), "{error}");
+    assert!(load(folder.path().join("new.png")).is_ok());
 }
 
 #[test]
@@ -332,8 +348,8 @@ fn pictures_that_cannot_be_compared_are_refused() {
     assert_snapshot!(refusals(&folder, pairs.map(line)), @r"
     error: b.exr: cannot compare a picture of 8x4 with a reference of 8x8 pixels; make both of one size
     error: there is no picture `missing.png`; check its name and the current folder
-    error: cannot decode `noise.exr`: it is damaged, of another format than its name tells, or too large (512 MiB); make it anew: Format error decoding OpenExr: invalid: file identifier missing: invalid: file identifier missing
-    error: cannot decode `old.png`: it is damaged, of another format than its name tells, or too large (512 MiB); make it anew: unexpected end of file
+    error: cannot decode `noise.exr`: it is damaged, or of another format than its name tells: Format error decoding OpenExr: invalid: file identifier missing; make it anew
+    error: cannot decode `old.png`: it is damaged, or of another format than its name tells: unexpected end of file; make it anew
     error: what kind of picture is `a.jpg`? Its name must end in .png (sRGB) or .exr (linear)
     ");
     let same = accepted(&folder, &["compare", "a.png", "a.png"]);

@@ -62,7 +62,7 @@ impl Tile {
     #[inline]
     pub fn set(&mut self, x: u32, y: u32, radiance: Rgb) {
         let index = (y - self.y) as usize * self.size.width as usize + (x - self.x) as usize;
-        self.pixels[index] = radiance.as_vec3().to_array();
+        self.pixels[index] = radiance.to_array().map(narrow);
     }
 
     /// Sets every pixel by its column and row in the picture; stops early when cancelled, since a pixel
@@ -76,6 +76,16 @@ impl Tile {
                 self.set(x, y, pixel(x, y));
             }
         }
+    }
+}
+
+/// The nearest `f32`. A radiance beyond its range, next to a lamp, becomes the largest number there is;
+/// what is not finite stays so, to be counted.
+fn narrow(channel: f64) -> f32 {
+    if channel.is_finite() {
+        channel.clamp(f32::MIN.into(), f32::MAX.into()) as f32
+    } else {
+        channel as f32
     }
 }
 
@@ -202,6 +212,28 @@ mod tests {
     fn half_plane(film: DVec2, samples: &mut u64) -> Rgb {
         *samples += 1;
         if film.x + 0.3 * film.y < 9.7 { Rgb::ONE } else { Rgb::ZERO }
+    }
+
+    /// A faulty sample is not spread over its neighbours, and a radiance beyond `f32` is no fault.
+    #[test]
+    fn a_nan_stains_one_pixel_and_a_huge_radiance_none() {
+        let size = ImageSize::new(9, 7);
+        for faulty in [f64::NAN, f64::INFINITY, 1e40, 1e300] {
+            let first = AtomicBool::new(true);
+            let radiance = |film: DVec2, _: &mut u64| {
+                let here = film.floor() == DVec2::new(4.0, 3.0);
+                Rgb::splat(if here && first.swap(false, Ordering::Relaxed) { faulty } else { 0.5 })
+            };
+            let sampling = PixelSampling { pattern: Pattern::Owen, samples: 4, seed: 1 };
+            let rendering = render_pixels(size, sampling, Control::default(), radiance).unwrap();
+            let defects = rendering.image.defects();
+            let expected = usize::from(!faulty.is_finite());
+            assert_eq!((defects.not_finite, defects.negative), (expected, 0), "{faulty}");
+            if expected == 0 {
+                assert_eq!(rendering.image.get(4, 3), Rgb::splat(f32::MAX.into()));
+            }
+            assert_eq!(rendering.image.get(5, 3), Rgb::splat(0.5));
+        }
     }
 
     #[test]

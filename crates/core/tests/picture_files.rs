@@ -251,6 +251,19 @@ mod unix {
         assert_eq!(names(folder.path()), ["socket.exr"]);
     }
 
+    /// One ends at once and one never does, but neither begins as a picture.
+    #[test]
+    fn devices_are_no_pictures() {
+        let folder = tempdir().unwrap();
+        for (name, device) in ["/dev/null", "/dev/zero"].into_iter().enumerate() {
+            for extension in ["png", "exr"] {
+                let path = folder.path().join(format!("{name}.{extension}"));
+                symlink(device, &path).unwrap();
+                assert_tells(&load(&path).unwrap_err(), &path, "it is damaged");
+            }
+        }
+    }
+
     /// Needs a folder on a nearly full disk of at most 1 MiB, for instance (as root)
     /// `mount -t tmpfs -o size=64k tmpfs DIR`, and `LANCER_SMALL_DISK=DIR`.
     #[test]
@@ -334,10 +347,39 @@ fn a_header_that_promises_too_much_is_refused() {
     let attribute = b"displayWindow\0box2i\0\x10\0\0\0";
     let at = bytes.windows(attribute.len()).position(|bytes| bytes == attribute).unwrap();
     let far_corner = at + attribute.len() + 8;
-    for (x, y) in [(30_000_i32, 30_000_i32), (i32::MAX / 2, 100)] {
+    // The corner is the last pixel of the window.
+    for (x, y, told) in [
+        (29_999_i32, 29_999_i32, "a picture of 30000x30000 is too large"),
+        (i32::MAX / 2, 100, "window size exceeding integer maximum"),
+        (11_999, 11_999, "1728000000 bytes, the maximum is 536870912"),
+    ] {
         bytes[far_corner..][..4].copy_from_slice(&x.to_le_bytes());
         bytes[far_corner + 4..][..4].copy_from_slice(&y.to_le_bytes());
         fs::write(&path, &bytes).unwrap();
-        assert_tells(&load(&path).unwrap_err(), &path, "too large");
+        assert_tells(&load(&path).unwrap_err(), &path, told);
+    }
+}
+
+/// Width, height, bits, kind of colour and the checksum (by zlib) of a PNG's header, which is right in
+/// all but its size; the last would unpack to 64 million pixels of 12 bytes from a file of some KiB.
+#[test]
+fn a_png_of_absurd_size_is_refused_before_it_is_unpacked() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("a.png");
+    save(&path, &picture(), 0.0).unwrap();
+    let mut bytes = fs::read(&path).unwrap();
+    for (width, height, bits, color, checksum, told) in [
+        (30_000_u32, 30_000_u32, 8, 2, 0xe945_6fed_u32, "a picture of 30000x30000 is too large"),
+        (0x7fff_ffff, 0x7fff_ffff, 16, 6, 0x4459_d725, "make it"),
+        (0, 5, 8, 2, 0xe424_7af6, "it is damaged"),
+        (16_384, 16_384, 1, 0, 0x81b3_2d29, "3221225472 bytes, the maximum is 536870912"),
+        (8_000, 8_000, 8, 0, 0x239a_f228, "768000000 bytes, the maximum is 536870912"),
+    ] {
+        bytes[16..20].copy_from_slice(&width.to_be_bytes());
+        bytes[20..24].copy_from_slice(&height.to_be_bytes());
+        (bytes[24], bytes[25]) = (bits, color);
+        bytes[29..33].copy_from_slice(&checksum.to_be_bytes());
+        fs::write(&path, &bytes).unwrap();
+        assert_tells(&load(&path).unwrap_err(), &path, told);
     }
 }

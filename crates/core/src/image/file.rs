@@ -1,8 +1,8 @@
-use std::fs;
-use std::io::{self, Cursor, ErrorKind};
+use std::fs::File;
+use std::io::{self, BufReader, Cursor, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use ::image::{DynamicImage, ImageFormat, ImageReader, Rgb32FImage, RgbImage};
+use ::image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Rgb32FImage, RgbImage};
 use thiserror::Error;
 
 use super::{Image, ImageSize, SizeError, WriteError, check_writable, srgb, write_atomically};
@@ -56,23 +56,36 @@ pub enum ImageError {
         /// What the operating system says.
         source: io::Error,
     },
-    /// The bytes are no whole picture of the format, or one that takes more than 512 MiB.
-    #[error("cannot decode `{}`: it is damaged, of another format than its name tells, or too large (512 MiB); make it anew", path.display())]
+    /// The bytes are no whole picture of the format.
+    #[error("cannot decode `{}`: it is damaged, or of another format than its name tells: {reason}; make it anew", path.display())]
     Decode {
         /// The picture file.
         path: PathBuf,
         /// What the decoder says.
-        source: ::image::ImageError,
+        reason: ::image::ImageError,
+    },
+    /// The picture would take more memory than [`MAX_BYTES`], whatever the size of its file.
+    #[error("cannot read `{}`: a picture of {size} is too large: {bytes} bytes, the maximum is {MAX_BYTES}; make it smaller", path.display())]
+    TooLarge {
+        /// The picture file.
+        path: PathBuf,
+        /// Its size as it says.
+        size: ImageSize,
+        /// What it takes in memory.
+        bytes: u64,
     },
     /// The file holds a picture of a size that we refuse.
-    #[error("cannot read `{}`", path.display())]
+    #[error("cannot read `{}`: {reason}", path.display())]
     Size {
         /// The picture file.
         path: PathBuf,
         /// What is wrong with its size.
-        source: SizeError,
+        reason: SizeError,
     },
 }
+
+/// The most bytes of a picture that is loaded: 512 MiB, or 44 million pixels.
+pub const MAX_BYTES: u64 = 1 << 29;
 
 /// Saves a picture in the format that the file's name tells, in either case: `.png`, 8-bit sRGB
 /// under this exposure as [`Image::to_srgb8`] gives it, or `.exr`, the linear `f32` channels bit
@@ -111,23 +124,31 @@ pub fn check_target(path: impl AsRef<Path>) -> Result<(), ImageError> {
 ///
 /// # Errors
 /// If the extension is unknown or the file cannot be read, is no whole picture of its format, or
-/// would take more than 512 MiB; every message names the file.
+/// would take more than [`MAX_BYTES`]; every message names the file.
 pub fn load(path: impl AsRef<Path>) -> Result<Image, ImageError> {
     let path = path.as_ref();
     let format = format_of(path)?;
-    let bytes = fs::read(path).map_err(|source| {
+    if path.is_dir() {
+        return Err(ImageError::IsFolder { path: path.into() });
+    }
+    let file = File::open(path).map_err(|source| {
         let path = path.to_owned();
         match source.kind() {
             ErrorKind::NotFound | ErrorKind::NotADirectory => ImageError::Missing { path },
-            _ if path.is_dir() => ImageError::IsFolder { path },
             _ => ImageError::Read { path, source },
         }
     })?;
-    let decoded = ImageReader::with_format(Cursor::new(bytes), format)
-        .decode()
-        .map_err(|source| ImageError::Decode { path: path.into(), source })?;
-    let size = ImageSize::checked(decoded.width().into(), decoded.height().into())
-        .map_err(|source| ImageError::Size { path: path.into(), source })?;
+    let damaged = |reason| ImageError::Decode { path: path.into(), reason };
+    let reader = ImageReader::with_format(BufReader::new(file), format);
+    let decoder = reader.into_decoder().map_err(damaged)?;
+    let (width, height) = decoder.dimensions();
+    let size = ImageSize::checked(width.into(), height.into())
+        .map_err(|reason| ImageError::Size { path: path.into(), reason })?;
+    let bytes = decoder.total_bytes().max((size.pixels() * size_of::<[f32; 3]>()) as u64);
+    if bytes > MAX_BYTES {
+        return Err(ImageError::TooLarge { path: path.into(), size, bytes });
+    }
+    let decoded = DynamicImage::from_decoder(decoder).map_err(damaged)?;
     Ok(Image::from_pixels(size, linear_pixels(decoded)))
 }
 
@@ -169,6 +190,8 @@ fn linear_pixels(decoded: DynamicImage) -> Vec<[f32; 3]> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     #[test]

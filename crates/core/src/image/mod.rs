@@ -6,7 +6,7 @@ mod size;
 mod srgb;
 
 pub use atomic::{WriteError, check_writable, write_atomically};
-pub use file::{ImageError, check_target, load, save};
+pub use file::{ImageError, MAX_BYTES, check_target, load, save};
 pub use size::{ImageSize, SizeError};
 
 use crate::Rgb;

@@ -39,7 +39,7 @@ impl Scene {
 pub enum CameraError {
     /// A coordinate is NaN or beyond [`MAX_COORDINATE`].
     NotFinite,
-    /// The eye is the point looked at.
+    /// The eye is the point looked at, or so near to it that squared lengths vanish.
     NoDirection,
     /// `up` is zero or along the line of sight.
     UpAlongView,
@@ -82,7 +82,7 @@ impl Camera {
         let is_in_space = |v: DVec3| v.abs().cmple(DVec3::splat(MAX_COORDINATE)).all();
         if !(is_in_space(self.eye) && is_in_space(self.look_at) && is_in_space(self.up)) {
             Err(CameraError::NotFinite)
-        } else if view == DVec3::ZERO {
+        } else if view.length() < 1e-100 {
             Err(CameraError::NoDirection)
         } else if across <= 1e-12 * view.length() * self.up.length() {
             Err(CameraError::UpAlongView)
@@ -152,7 +152,9 @@ mod tests {
         assert_eq!(good.check(), Ok(()));
         let nan = Camera { eye: dvec3(0.0, f64::NAN, 0.0), ..good };
         assert_eq!(nan.check(), Err(CameraError::NotFinite));
-        assert_eq!(Camera { eye: DVec3::ZERO, ..good }.check(), Err(CameraError::NoDirection));
+        for eye in [DVec3::ZERO, 1e-150 * DVec3::Z] {
+            assert_eq!(Camera { eye, ..good }.check(), Err(CameraError::NoDirection));
+        }
         for up in [DVec3::ZERO, DVec3::Z, -2.0 * DVec3::Z] {
             assert_eq!(Camera { up, ..good }.check(), Err(CameraError::UpAlongView));
         }

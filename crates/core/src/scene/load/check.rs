@@ -1,6 +1,8 @@
+use std::path::{Path, PathBuf};
+
 use glam::DVec3;
 
-use super::MAX_COORDINATE;
+use super::{MAX_COORDINATE, MAX_RADIANCE};
 
 /// What is wrong, and what to do about it.
 pub(super) type Problem = (String, &'static str);
@@ -12,6 +14,11 @@ pub(super) enum Range {
     Share,
     NotNegative,
     Positive,
+    /// Radiances and intensities: not negative, up to [`MAX_RADIANCE`].
+    Radiance,
+    /// Refractive indices: those that the MTL specification has, and their reciprocals. Beyond, the
+    /// refracted direction would be a difference of huge numbers.
+    Index,
     /// The kinds of material that an MTL file numbers.
     Illum,
 }
@@ -22,12 +29,14 @@ pub(super) fn in_range(name: &str, value: f64, range: Range) -> Result<f64, Prob
         Range::Share => ((0.0..=1.0).contains(&value), "it must be between 0 and 1"),
         Range::NotNegative => (value >= 0.0, "it must be finite and not negative"),
         Range::Positive => (value > 0.0, "it must be finite and positive"),
+        Range::Radiance => ((0.0..=MAX_RADIANCE).contains(&value), "it must be between 0 and 1e30"),
+        Range::Index => ((1e-3..=1e3).contains(&value), "it must be between 0.001 and 1000"),
         Range::Illum => (
             value.fract() == 0.0 && (0.0..=10.0).contains(&value),
             "it must be a whole number from 0 to 10",
         ),
     };
-    if holds && value.is_finite() { Ok(value) } else { Err((format!("{name} is {value}"), cure)) }
+    if holds && value.is_finite() { Ok(value) } else { Err((format!("{name} is {value:?}"), cure)) }
 }
 
 /// Refuses a `count` of `what` beyond `limit`.
@@ -42,6 +51,21 @@ pub(super) fn within_limit(
     } else {
         Err((format!("{count} {what}, the maximum is {limit}"), cure))
     }
+}
+
+/// The path of a file that another one, in `folder`, names: in that folder or below it, and nowhere
+/// else, so that files from a stranger cannot make us read others. A `\` separates folders, too.
+pub(super) fn beside(folder: &Path, what: &str, name: &str) -> Result<PathBuf, Problem> {
+    let name = name.replace('\\', "/");
+    let has_drive = name.as_bytes().get(1) == Some(&b':');
+    if name.starts_with('/') || has_drive || name.split('/').any(|part| part == "..") {
+        let problem = format!("{what} `{}` is outside this file's folder", excerpt(&name));
+        return Err((
+            problem,
+            "put it beside this file or in a folder below, and name it from here",
+        ));
+    }
+    Ok(folder.join(name))
 }
 
 /// The start of a text, short enough for a message.

@@ -1,6 +1,7 @@
 use std::io::{BufRead, BufReader, ErrorKind, Read};
 
-use super::LoadError;
+use super::check::within_limit;
+use super::{LoadError, MAX_BYTES};
 
 /// The logical lines of an OBJ or MTL file, as clean text.
 ///
@@ -76,6 +77,10 @@ impl<'a> Lines<'a> {
                     None => (buffer.len(), None),
                 },
             };
+            within_limit(self.bytes.len(), "or more bytes in a line", MAX_BYTES, "break the line")
+                .map_err(|(problem, cure)| {
+                    LoadError::at(self.file, self.read + 1, problem, cure)
+                })?;
             // `peek` borrows all of `self`; its bytes are still in the buffer.
             self.bytes.extend_from_slice(&self.reader.buffer()[..length]);
             self.reader.consume(length + usize::from(end.is_some()));

@@ -38,6 +38,12 @@ pub const MAX_CORNERS: usize = 100_000;
 /// The largest coordinate, in absolute value. Products of six of them are still finite.
 pub const MAX_COORDINATE: f64 = 1e50;
 
+/// The largest radiance or intensity of a file. Pictures are `f32` and end at 3e38.
+pub const MAX_RADIANCE: f64 = 1e30;
+
+/// The most bytes of a scene file, and of one line of an OBJ or MTL file.
+pub const MAX_BYTES: usize = 1 << 26;
+
 /// A scene and what there is to say about its files.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
@@ -94,6 +100,10 @@ pub fn parse_scene(text: &str, name: &str, folder: &Path) -> Result<Loaded, Load
 type Open<'a> = &'a dyn Fn(&Path) -> io::Result<Box<dyn Read>>;
 
 fn open(path: &Path) -> io::Result<Box<dyn Read>> {
+    // Some systems open folders and only refuse to read them.
+    if path.is_dir() {
+        return Err(io::ErrorKind::IsADirectory.into());
+    }
     Ok(Box::new(File::open(path)?))
 }
 
@@ -105,9 +115,20 @@ fn load_with(path: &Path, open: Open<'_>) -> Result<Loaded, LoadError> {
         "toml" => {
             let unreadable = |reason| LoadError::Unreadable { file: file(), reason };
             let mut bytes = Vec::new();
-            open(path).and_then(|mut source| source.read_to_end(&mut bytes)).map_err(unreadable)?;
-            let text = String::from_utf8(bytes).map_err(|_| {
-                LoadError::at(&file(), None, "the text is not UTF-8", "save the file as UTF-8")
+            open(path)
+                .and_then(|source| source.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes))
+                .map_err(unreadable)?;
+            check::within_limit(
+                bytes.len(),
+                "or more bytes",
+                MAX_BYTES,
+                "move large meshes to OBJ files",
+            )
+            .map_err(|(problem, cure)| LoadError::at(&file(), None, problem, cure))?;
+            let text = String::from_utf8(bytes).map_err(|error| {
+                let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+                let line = 1 + good.iter().filter(|&&byte| byte == b'\n').count();
+                LoadError::at(&file(), line, "the text is not UTF-8", "save the file as UTF-8")
             })?;
             let folder = path.parent().unwrap_or(Path::new(""));
             scene_toml::parse(text.trim_start_matches('\u{feff}'), &file(), folder, open)
@@ -151,7 +172,10 @@ fn frame(scene: &mut Scene, file: &str) -> Result<(), LoadError> {
         LoadError::at(file, None, problem, "check the vertices")
     })?;
     scene.camera = Camera::framing(bounds);
-    Ok(())
+    scene.camera.check().map_err(|_| {
+        let problem = format!("a scene of radius {:e} cannot be framed", bounds.radius);
+        LoadError::at(file, None, problem, "scale it to a size between 1e-100 and 1e49")
+    })
 }
 
 fn finish(scene: Scene, warnings: Warnings) -> Loaded {

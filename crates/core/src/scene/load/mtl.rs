@@ -2,7 +2,7 @@ use std::collections::HashMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::check::{Problem, Range, excerpt, in_range};
+use super::check::{Problem, Range, beside, excerpt, in_range};
 use super::clean::Lines;
 use super::report::{LoadError, WarningKind, Warnings};
 use super::{DEFAULT_GREY, Open};
@@ -32,10 +32,11 @@ impl Library {
     ) -> Result<Self, LoadError> {
         let mut library = Self::default();
         let file = model.display().to_string();
+        let folder = model.parent().unwrap_or(Path::new(""));
         let mut paths: Vec<PathBuf> = Vec::new();
         for (name, line) in names {
             let place = |name| {
-                library_path(model, name)
+                beside(folder, "mtllib", name)
                     .map_err(|(problem, cure)| LoadError::at(&file, *line, problem, cure))
             };
             // One name with spaces, or several names.
@@ -120,18 +121,6 @@ impl Library {
     }
 }
 
-/// Where a library stands: in the model's folder or below it, and nowhere else, so that a model
-/// from a stranger cannot make us read other files.
-fn library_path(model: &Path, name: &str) -> Result<PathBuf, Problem> {
-    let name = name.replace('\\', "/");
-    let has_drive = name.as_bytes().get(1) == Some(&b':');
-    if name.starts_with('/') || has_drive || name.split('/').any(|part| part == "..") {
-        let problem = format!("mtllib `{name}` is outside the model's folder");
-        return Err((problem, "put the library beside the model and name it without a path"));
-    }
-    Ok(model.parent().unwrap_or(Path::new("")).join(name))
-}
-
 /// Statements about effects that are not in the slides: textures and the later "PBR" extension.
 const IGNORED: [&str; 27] = [
     "map_Ka",
@@ -196,9 +185,9 @@ impl Definition {
             "Kd" => self.kd = Some(color(Range::Share)?),
             "Ks" => self.ks = Some(color(Range::Share)?),
             "Tf" => self.tf = Some(color(Range::Share)?),
-            "Ke" => self.ke = Some(color(Range::NotNegative)?),
+            "Ke" => self.ke = Some(color(Range::Radiance)?),
             "Ns" => self.ns = Some(number(Range::NotNegative)?),
-            "Ni" => self.ni = Some(number(Range::Positive)?),
+            "Ni" => self.ni = Some(number(Range::Index)?),
             "d" => self.d = Some(number(Range::Share)?),
             "Tr" => self.tr = Some(number(Range::Share)?),
             _ => self.illum = Some(number(Range::Illum)?),

@@ -218,16 +218,23 @@ impl<'a> Source<'a> {
     }
 
     fn unit_normals(&self, numbers: &[f64]) -> Result<Vec<DVec3>, LoadError> {
-        let unit = |n: &[f64]| DVec3::from_slice(n).try_normalize();
-        numbers.chunks_exact(3).map(unit).collect::<Option<_>>().ok_or_else(|| {
-            LoadError::at(
-                self.file,
-                self.line_of_vector("vn", |n| n.try_normalize().is_none()),
-                "a normal is zero or not finite",
-                "correct it, or leave the normals out for flat faces",
-            )
-        })
+        numbers.chunks_exact(3).map(DVec3::from_slice).map(unit).collect::<Option<_>>().ok_or_else(
+            || {
+                LoadError::at(
+                    self.file,
+                    self.line_of_vector("vn", |n| unit(n).is_none()),
+                    "a normal is zero or not finite",
+                    "correct it, or leave the normals out for flat faces",
+                )
+            },
+        )
     }
+}
+
+/// The unit vector of a normal of any finite length but 0; squares of very short and very long ones
+/// would leave the range of numbers.
+fn unit(normal: DVec3) -> Option<DVec3> {
+    (normal / normal.abs().max_element()).try_normalize()
 }
 
 /// Findings about faces: their kind, the first face, how many.

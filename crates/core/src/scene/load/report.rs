@@ -6,7 +6,7 @@ use std::io;
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
     /// The system refused to open or read a file.
-    #[error("{file}: {reason}; check the path and its permissions")]
+    #[error("{}: {reason}; check the path and its permissions", place(file, None))]
     Unreadable {
         /// The file as it was asked for.
         file: String,
@@ -14,19 +14,19 @@ pub enum LoadError {
         reason: io::Error,
     },
     /// A folder has that name.
-    #[error("{file}: it is a folder; name a .obj or .toml file in it")]
+    #[error("{}: it is a folder; name a .obj or .toml file in it", place(file, None))]
     IsFolder {
         /// The file as it was asked for.
         file: String,
     },
     /// The extension names no kind of scene.
-    #[error("{file}: unknown kind of scene; the known ones are .obj and .toml")]
+    #[error("{}: unknown kind of scene; the known ones are .obj and .toml", place(file, None))]
     UnknownKind {
         /// The file as it was asked for.
         file: String,
     },
     /// The content is wrong.
-    #[error("{}: {problem}; {cure}", place(file, *line))]
+    #[error("{}: {}; {}", place(file, *line), printable(problem), printable(cure))]
     Invalid {
         /// The file the content stands in.
         file: String,
@@ -56,7 +56,13 @@ impl LoadError {
 }
 
 fn place(file: &str, line: Option<usize>) -> String {
-    line.map_or_else(|| file.to_owned(), |line| format!("{file}:{line}"))
+    let file = printable(file);
+    line.map_or_else(|| file.clone(), |line| format!("{file}:{line}"))
+}
+
+/// Text from a file, as one line that cannot control a terminal.
+fn printable(text: &str) -> String {
+    text.replace(char::is_control, "\u{fffd}")
 }
 
 /// What was ignored, replaced, or looks wrong without stopping the scene from being drawn.

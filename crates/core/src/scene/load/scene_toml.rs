@@ -4,7 +4,7 @@ use std::path::Path;
 use glam::{DAffine3, DMat3, DVec3};
 use toml::Spanned;
 
-use super::check::{Problem, Range, excerpt, in_range, is_in_space, within_limit};
+use super::check::{Problem, Range, beside, excerpt, in_range, is_in_space, within_limit};
 use super::report::{LoadError, WarningKind, Warnings};
 use super::tables::{
     CameraTable, MaterialTable, MeshTable, PigmentValue, SceneFile, SphereTable, Triple,
@@ -31,12 +31,12 @@ pub(super) fn parse(
     let file: SceneFile = toml::from_str(text).map_err(|error| source.explain(&error))?;
     let mut warnings = Warnings::default();
     let mut scene = empty_scene();
-    scene.ambient = source.color_or_black("ambient", &file.ambient, Range::NotNegative)?;
-    scene.background = source.color_or_black("background", &file.background, Range::NotNegative)?;
+    scene.ambient = source.color_or_black("ambient", &file.ambient, Range::Radiance)?;
+    scene.background = source.color_or_black("background", &file.background, Range::Radiance)?;
     for light in &file.light {
         scene.lights.push(PointLight {
             position: source.point("position", &light.position)?,
-            intensity: source.color("intensity", &light.intensity, Range::NotNegative)?,
+            intensity: source.color("intensity", &light.intensity, Range::Radiance)?,
         });
     }
     scene.materials =
@@ -94,10 +94,19 @@ impl Source<'_> {
         let cure = match quoted.next() {
             Some(key) if message.starts_with("unknown field") => nearest(key, quoted),
             Some(_) if message.starts_with("missing field") => "add it".to_owned(),
+            _ if message == "invalid type: map, expected a sequence" => {
+                "there may be several: write its name in double brackets, such as [[light]]"
+                    .to_owned()
+            }
+            _ if message.ends_with("expected f64") => "write a number such as -1.5".to_owned(),
             _ => "correct the value or the syntax".to_owned(),
         };
         let problem = message.split(", expected one of").next().unwrap_or_default();
-        self.error(error.span().unwrap_or_default(), (problem, cure))
+        let problem: String = problem.chars().take(200).collect();
+        match error.span() {
+            Some(span) => self.error(span, (problem, cure)),
+            None => LoadError::at(self.name, None, problem, cure),
+        }
     }
 
     fn number(&self, name: &str, value: &Spanned<f64>, range: Range) -> Result<f64, LoadError> {
@@ -157,19 +166,18 @@ impl Source<'_> {
             shininess: number("shininess", &table.shininess, Range::NotNegative)?,
             k_s: share("k_s", &table.k_s)?,
             k_t: share("k_t", &table.k_t)?,
-            refractive_index: number("refractive_index", &table.refractive_index, Range::Positive)?,
-            emission: self.color_or_black("emission", &table.emission, Range::NotNegative)?,
+            refractive_index: number("refractive_index", &table.refractive_index, Range::Index)?,
+            emission: self.color_or_black("emission", &table.emission, Range::Radiance)?,
         })
     }
 
     fn material_id(&self, names: &[&str], name: &Spanned<String>) -> Result<MaterialId, LoadError> {
         let wanted = name.get_ref().as_str();
-        names.iter().position(|&known| known == wanted).map(|i| MaterialId(i as u32)).ok_or_else(
-            || {
-                let problem = format!("unknown material `{}`", excerpt(wanted));
-                self.error(name.span(), (problem, nearest(wanted, names.iter().copied())))
-            },
-        )
+        // The names are a map's keys, in order.
+        names.binary_search(&wanted).map(|i| MaterialId(i as u32)).map_err(|_| {
+            let problem = format!("unknown material `{}`", excerpt(wanted));
+            self.error(name.span(), (problem, nearest(wanted, names.iter().copied())))
+        })
     }
 
     fn sphere(
@@ -239,12 +247,14 @@ impl Source<'_> {
         warnings: &mut Warnings,
     ) -> Result<(), LoadError> {
         let transform = self.transform(table)?;
-        let path = folder.join(table.obj.get_ref());
+        let path = beside(folder, "obj", table.obj.get_ref())
+            .map_err(|problem| self.error(table.obj.span(), problem))?;
         let (mut mesh, materials) =
             obj::read_obj(&path, open, warnings).map_err(|error| match error {
-                LoadError::Unreadable { file, reason } => {
+                LoadError::Unreadable { reason, .. } => {
+                    let problem = format!("obj `{}`: {reason}", excerpt(table.obj.get_ref()));
                     let cure = "mesh files are looked for from the scene's folder";
-                    self.error(table.obj.span(), (format!("{file}: {reason}"), cure))
+                    self.error(table.obj.span(), (problem, cure))
                 }
                 other => other,
             })?;
@@ -285,7 +295,7 @@ impl Source<'_> {
                 Ok(scale)
             } else {
                 let cure = "it must be finite and not zero";
-                Err(self.error(value.span(), (format!("scale is {scale}"), cure)))
+                Err(self.error(value.span(), (format!("scale is {:?}", scale.to_array()), cure)))
             }
         })?;
         let [x, y, z] = vector("rotate", &table.rotate)?.to_array().map(f64::to_radians);
@@ -326,12 +336,18 @@ fn check_point(name: &str, point: DVec3) -> Result<DVec3, Problem> {
     }
 }
 
-/// The cure for a name that is not known: the known ones, the most similar first.
+/// The cure for a name that is not known: the known ones, the most similar first. Names may be long
+/// and many: only the start of each is compared, and the first ten are shown.
 fn nearest<'a>(wanted: &str, known: impl Iterator<Item = &'a str>) -> String {
-    let mut known: Vec<&str> = known.collect();
-    known.sort_by_key(|name| strsim::damerau_levenshtein(wanted, name));
-    match known[..] {
-        [] => "no such name is defined".to_owned(),
-        _ => format!("the known ones are {}", known.join(", ")),
+    const SHOWN: usize = 10;
+    let wanted = excerpt(wanted);
+    let mut known: Vec<String> = known.map(excerpt).collect();
+    known.sort_by_cached_key(|name| strsim::damerau_levenshtein(&wanted, name));
+    match known.len() {
+        0 => "no such name is defined".to_owned(),
+        1..=SHOWN => format!("the known ones are {}", known.join(", ")),
+        count => {
+            format!("of {count} known ones the nearest are {}", known[..SHOWN].join(", "))
+        }
     }
 }

@@ -260,3 +260,24 @@ fn out_of_range(index: &str, count: usize, what: &str) -> Problem {
         "count from 1, or back from -1 for the latest",
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The limits that no test file can reach, with both numbers.
+    #[test]
+    fn counts_beyond_32_bits_are_refused() {
+        let mut full = Record {
+            vertices: MAX_COUNT,
+            normals: MAX_COUNT,
+            faces: MAX_COUNT,
+            ..Record::default()
+        };
+        let cure = "split the model";
+        let beyond = |what| (format!("4294967296 {what}, the maximum is 4294967295"), cure);
+        assert_eq!(full.count("v").err(), Some(beyond("vertices")));
+        assert_eq!(full.count("vn").err(), Some(beyond("normals")));
+        assert_eq!(full.face(1, "1 2 3").err(), Some(beyond("faces")));
+    }
+}

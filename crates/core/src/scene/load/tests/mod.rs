@@ -1,7 +1,7 @@
 //! Whole files, good and hostile, read from memory.
 
+mod limits;
 mod mtl;
-mod mutations;
 mod obj;
 mod scene_toml;
 
@@ -31,6 +31,26 @@ fn warnings(loaded: &Loaded) -> Vec<String> {
 #[track_caller]
 fn assert_refused(result: Result<Loaded, LoadError>, message: &str) {
     assert_eq!(result.expect_err("refused").to_string(), message);
+}
+
+/// Names of files that are in no folder of ours, as the systems write them.
+const OUTSIDE: [&str; 8] = [
+    "../m.mtl",
+    "/etc/passwd",
+    "lib/../../m.mtl",
+    "..\\m.mtl",
+    "C:\\m.mtl",
+    "c:m.mtl",
+    "\\m.mtl",
+    "\\\\server\\share\\m.mtl",
+];
+
+fn is_outside(name: &str) -> String {
+    let name = name.replace('\\', "/");
+    format!(
+        "`{name}` is outside this file's folder; \
+         put it beside this file or in a folder below, and name it from here"
+    )
 }
 
 fn area(mesh: &Mesh) -> f64 {

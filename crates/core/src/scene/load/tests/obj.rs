@@ -1,5 +1,3 @@
-use std::fmt::Write;
-
 use glam::dvec3;
 
 use super::*;
@@ -44,6 +42,9 @@ fn every_way_to_write_a_triangle() {
 fn positions_are_read_as_f64() {
     let loaded = obj("v 16777217 0.1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("fine");
     assert_eq!(loaded.scene.mesh.corners(0)[0], dvec3(16_777_217.0, 0.1, 0.0));
+    // Beyond the largest `f32`.
+    let loaded = obj("v 1e39 0 0\nv 0 1e39 0\nv 0 0 1e39\nf 1 2 3\n").expect("fine");
+    assert_eq!(loaded.scene.mesh.corners(0)[0], dvec3(1e39, 0.0, 0.0));
 }
 
 #[test]
@@ -165,8 +166,9 @@ fn what_is_not_drawn_is_counted() {
 
 #[test]
 fn nothing_to_draw_is_refused() {
-    let junk = vec![b'x'; 1 << 20];
-    for nothing in [&b""[..], b"\0", b"v 0 0 0\nf 1 1\n", b"# a comment", &junk] {
+    let junk = vec![b'x'; 20 << 20];
+    let bytes: Vec<u8> = (0..20_u32 << 20).map(|i| 128 | (i % 127) as u8).collect();
+    for nothing in [&b""[..], b"\0", b"v 0 0 0\nf 1 1\n", b"# a comment", &junk, &bytes] {
         assert_refused(
             obj(nothing),
             "a.obj: nothing to draw: no face with 3 corners; \
@@ -195,6 +197,19 @@ fn files_that_cannot_be_read_are_named() {
         assert!(message.starts_with(&format!("{}: ", path.display())), "{message}");
         assert!(message.ends_with("; check the path and its permissions"), "{message}");
     }
+    // A folder in the place of a library is one that cannot be opened; of a mesh, the scene's mistake.
+    let text = format!("mtllib folder.obj\n{TRIANGLE}");
+    std::fs::write(folder.path().join("a.obj"), text).expect("a file");
+    let loaded = load(&folder.path().join("a.obj")).expect("fine");
+    assert_eq!(
+        (loaded.warnings[0].line, &loaded.warnings[0].kind),
+        (Some(1), &WarningKind::MissingLibrary)
+    );
+    let scene = folder.path().join("s.toml");
+    std::fs::write(&scene, "[[mesh]]\nobj = 'folder.obj'\n").expect("a file");
+    let message = load(&scene).expect_err("refused").to_string();
+    assert!(message.starts_with(&format!("{}:2: ", scene.display())), "{message}");
+    assert!(message.ends_with("; mesh files are looked for from the scene's folder"), "{message}");
     let path = folder.path().join("folder.obj");
     let expected = format!("{}: it is a folder; name a .obj or .toml file in it", path.display());
     assert_refused(load(&path), &expected);
@@ -203,6 +218,55 @@ fn files_that_cannot_be_read_are_named() {
             load(Path::new(name)),
             &format!("{name}: unknown kind of scene; the known ones are .obj and .toml"),
         );
+    }
+}
+
+/// Devices that never hold a scene: the one ends at once, the other never, in one line.
+#[cfg(unix)]
+#[test]
+fn devices_are_refused() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for (device, name, problem) in [
+        ("/dev/null", "a.obj", ": nothing to draw: no face with 3 corners; "),
+        ("/dev/null", "a.toml", ": nothing to draw; "),
+        ("/dev/zero", "b.obj", ":1: 67174400 or more bytes in a line, the maximum is 67108864; "),
+        ("/dev/zero", "b.toml", ": 67108865 or more bytes, the maximum is 67108864; "),
+    ] {
+        let path = folder.path().join(name);
+        std::os::unix::fs::symlink(device, &path).expect("a link");
+        let message = load(&path).expect_err("refused").to_string();
+        let expected = format!("{}{problem}", path.display());
+        assert!(message.starts_with(&expected), "{message} for {expected}");
+    }
+}
+
+/// What a file says reaches the terminal as text, on one line.
+#[test]
+fn messages_hold_no_control_characters() {
+    assert_refused(
+        obj("v 0 0 \u{1b}[2J\u{7}\n"),
+        "a.obj:1: `v 0 0 \u{fffd}[2J\u{fffd}` cannot be read; write three numbers, with a decimal point",
+    );
+    let name = "a\u{1b}[2J.obj";
+    assert_refused(
+        load_from(&[(name, b"f 1 2 3\n")], name),
+        "a\u{fffd}[2J.obj:1: the face names number 3 of 0 vertices; \
+         count from 1, or back from -1 for the latest",
+    );
+}
+
+/// Nothing is read beyond a size that squared lengths can tell.
+#[test]
+fn models_of_extreme_size_are_refused() {
+    for size in ["1e-120", "1e-150", "1e50"] {
+        let text = format!("v 0 0 0\nv {size} 0 0\nv 0 {size} 0\nf 1 2 3\n");
+        let message = obj(text).expect_err("refused").to_string();
+        assert!(message.starts_with("a.obj: a scene of radius "), "{message}");
+        assert!(message.ends_with(" cannot be framed; scale it to a size between 1e-100 and 1e49"));
+    }
+    for size in ["1e-90", "1e48"] {
+        let text = format!("v 0 0 0\nv {size} 0 0\nv 0 {size} 0\nf 1 2 3\n");
+        assert_eq!(obj(text).expect("fine").scene.camera.check(), Ok(()));
     }
 }
 
@@ -221,6 +285,12 @@ fn normals_make_faces_smooth() {
         warnings(&loaded),
         ["a.obj:10: face with normals at some corners only is drawn flat"]
     );
+    // Of any length: 3-4-5.
+    for length in ["", "e-160", "e-310", "e300"] {
+        let text = format!("{TRIANGLE}vn 3{length} 0 -4{length}\nf 1//1 2//1 3//1\n");
+        let n = obj(text).expect("fine").scene.mesh.normals[0];
+        assert!((n - dvec3(0.6, 0.0, -0.8)).length() < 1e-12, "{n}");
+    }
     for bad in ["0 0 0", "nan 0 1", "0 inf 1", "0 0 1e400"] {
         assert_refused(
             obj(format!("{TRIANGLE}vn 0 0 1\nvn {bad}\nf 1//1 2//2 3//1\n")),
@@ -241,31 +311,6 @@ fn groups_and_materials_share_vertices() {
     assert_eq!(mesh.positions.len(), 4);
     assert_eq!(mesh.faces.iter().map(|f| f.material.0).collect::<Vec<_>>(), [1, 0, 1]);
     assert_eq!(loaded.scene.materials.len(), 2);
-}
-
-#[test]
-fn large_files_are_read_and_limits_named() {
-    let mut text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n".to_owned() + &"f 1 2 3\n".repeat(200_000);
-    assert_eq!(obj(&text).expect("fine").scene.counts().triangles, 200_000);
-    let polygon = |count: usize| {
-        let mut text = String::new();
-        let mut face = "f".to_owned();
-        for i in 0..count {
-            let angle = std::f64::consts::TAU * i as f64 / count as f64;
-            writeln!(text, "v {} {} 0", angle.cos(), angle.sin()).expect("memory");
-            write!(face, " {}", i + 1).expect("memory");
-        }
-        text + &face
-    };
-    let loaded = obj(polygon(100_000)).expect("fine");
-    assert_eq!((loaded.scene.counts().faces, loaded.scene.counts().triangles), (1, 99_998));
-    text = polygon(100_001);
-    assert_refused(
-        obj(text),
-        "a.obj:100002: 100001 corners in one face, the maximum is 100000; split the face",
-    );
-    let (problem, _) = check::within_limit(MAX_COUNT + 1, "vertices", MAX_COUNT, "").unwrap_err();
-    assert_eq!(problem, "4294967296 vertices, the maximum is 4294967295");
 }
 
 #[test]

@@ -103,7 +103,10 @@ fn bad_values_are_refused_with_their_line() {
     let share = "it must be between 0 and 1";
     let finite = "coordinates must be finite and below 1e50";
     let positive = "it must be finite and positive";
+    let radiance = "it must be between 0 and 1e30";
+    let index = "it must be between 0.001 and 1000";
     let syntax = "correct the value or the syntax";
+    let number = "write a number such as -1.5";
     let floor = "vertices = [[-2, 0, -2], [-2, 0, 2], [2, 0, 2], [2, 0, -2]]";
     for (good, bad, problem, cure) in [
         ("eye = [0, 1, 5]", "eye = [0, nan, 5]", "eye is [0.0, NaN, 5.0]", finite),
@@ -129,12 +132,7 @@ fn bad_values_are_refused_with_their_line() {
         ("fov = 45", "fov = 0", "fov is out of range", "it must be between 0 and 180 degrees"),
         ("fov = 45", "fov = nan", "fov is out of range", "it must be between 0 and 180 degrees"),
         ("position = [1, 4, 2]", "position = [1, inf, 2]", "position is [1.0, inf, 2.0]", finite),
-        (
-            "intensity = 3",
-            "intensity = -3",
-            "intensity is -3",
-            "it must be finite and not negative",
-        ),
+        ("intensity = 3", "intensity = -3", "intensity is -3.0", radiance),
         ("intensity = 3", "intensity = 'red'", "expected a number or an array of three", syntax),
         (
             "intensity = 3",
@@ -156,17 +154,27 @@ fn bad_values_are_refused_with_their_line() {
             "it must be finite and not negative",
         ),
         ("k_s = 0.1", "k_s = 1.1", "k_s is 1.1", share),
-        ("rho_d = 0.05", "rho_d = [0, 0, -1]", "rho_d is -1", share),
-        ("refractive_index = 1.5", "refractive_index = 0", "refractive_index is 0", positive),
+        ("rho_d = 0.05", "rho_d = [0, 0, -1]", "rho_d is -1.0", share),
+        ("refractive_index = 1.5", "refractive_index = 0", "refractive_index is 0.0", index),
+        ("emission = [5, 5, 4]", "emission = [5, 5, inf]", "emission is inf", radiance),
+        ("radius = 1", "radius = 0", "radius is 0.0", positive),
+        ("radius = 1", "radius = -1", "radius is -1.0", positive),
+        ("radius = 1", "radius = true", "invalid type: boolean `true`, expected f64", number),
+        ("radius = 1", "radius = [1]", "invalid type: sequence, expected f64", number),
+        ("radius = 1", "radius = '1'", "invalid type: string \"1\", expected f64", number),
         (
-            "emission = [5, 5, 4]",
-            "emission = [5, 5, inf]",
-            "emission is inf",
-            "it must be finite and not negative",
+            "material = 'glass'",
+            "material = 1",
+            "invalid type: integer `1`, expected a string",
+            syntax,
         ),
-        ("radius = 1", "radius = 0", "radius is 0", positive),
         ("radius = 1", "radius = 1e60", "center + radius is [1e60, 1e60, 1e60]", finite),
-        ("scale = -1", "scale = [1, 0, 1]", "scale is [1, 0, 1]", "it must be finite and not zero"),
+        (
+            "scale = -1",
+            "scale = [1, 0, 1]",
+            "scale is [1.0, 0.0, 1.0]",
+            "it must be finite and not zero",
+        ),
         (
             "translate = [0, 0, 1]",
             "translate = [nan, 0, 1]",
@@ -226,18 +234,68 @@ fn bad_values_are_refused_with_their_line() {
     }
 }
 
+/// Wherever the format has a number, what is not one or not finite is refused at its line.
+#[test]
+fn every_number_must_be_finite() {
+    let mut tried = 0;
+    for (i, line) in EVERYTHING.lines().enumerate() {
+        if line.starts_with('#') || !line.contains(" = ") {
+            continue;
+        }
+        for (at, _) in line.match_indices(|c: char| c.is_ascii_digit()) {
+            if line[..at].ends_with(|c: char| c.is_alphanumeric() || c == '.') {
+                continue;
+            }
+            let length = line[at..].find(|c: char| !c.is_ascii_digit() && c != '.');
+            let rest = &line[length.map_or(line.len(), |length| at + length)..];
+            for bad in ["nan", "inf", "1e400", "''", "true", "[[]]"] {
+                // A minus before the number is kept: -nan and -inf are numbers of TOML.
+                let changed = format!("{}{bad}{rest}", &line[..at]);
+                let text =
+                    EVERYTHING.replacen(&format!("\n{line}\n"), &format!("\n{changed}\n"), 1);
+                let message = scene(&text).expect_err(&changed).to_string();
+                let place = format!("scenes/s.toml:{}: ", i + 1);
+                assert!(message.starts_with(&place), "{changed}: {message}");
+                tried += 1;
+            }
+        }
+    }
+    assert!(tried > 300, "{tried}");
+}
+
+#[test]
+fn text_that_is_not_utf_8_is_refused_with_its_line() {
+    let text = b"ambient = 1\n# caf\xE9\n";
+    assert_refused(
+        load_from(&[("s.toml", text)], "s.toml"),
+        "s.toml:2: the text is not UTF-8; save the file as UTF-8",
+    );
+}
+
 #[test]
 fn missing_keys_are_named() {
     let text = "[camera]\neye = [0, 0, 1]\n[[sphere]]\ncenter = [0, 0, 0]\n";
     assert_refused(scene(text), "scenes/s.toml:1: missing field `look_at`; add it");
+    assert_refused(
+        scene("ambient = 1\n[light]\nposition = [0, 0, 0]\nintensity = 1\n"),
+        "scenes/s.toml:2: invalid type: map, expected a sequence; \
+         there may be several: write its name in double brackets, such as [[light]]",
+    );
 }
 
 #[test]
 fn meshes_are_refused_where_they_are_named() {
     let good = "obj = 'parts/a.obj'";
     let cure = "mesh files are looked for from the scene's folder";
-    let missing = "scenes/parts/b.obj: entity not found";
+    let missing = "obj `parts/b.obj`: entity not found";
     assert_line_refused(good, "obj = 'parts/b.obj'", &format!("{missing}; {cure}"));
+    for outside in OUTSIDE {
+        let problem = format!("obj {}", is_outside(outside));
+        assert_line_refused(good, &format!("obj = '{outside}'"), &problem);
+    }
+    // Written on Windows.
+    let loaded = scene(EVERYTHING.replace("parts/a.obj", "parts\\a.obj")).expect("fine");
+    assert_eq!(loaded.scene.counts().faces, 4);
     assert_refused(
         scene(EVERYTHING.replace("parts/a.obj", "parts/bad.obj")),
         "scenes/parts/bad.obj:2: the face names number 2 of 1 vertices; \
