@@ -55,6 +55,38 @@ fn quadratic() {
     assert!(lost("textbook f32") > 0.0);
 }
 
+/// 0.2: the error bound is right at all twenty sites. What leaks near the origin follows from ε over the scale
+/// alone, and nothing leaks where that is less than the lowest sheet's 3·10⁻⁶.
+#[test]
+fn acne() {
+    let rows = rows(&made("0.2"));
+    let site = |offset: &str, away: f64, exponent: i32| -> [f64; 2] {
+        let row = rows.iter().find(|row| {
+            let here = value(row, "scale") == 10.0_f64.powi(exponent);
+            field(row, "offset") == offset && value(row, "sizes_away") == away && here
+        });
+        let row = row.unwrap_or_else(|| panic!("no row {offset} {away} {exponent}"));
+        ["wrongly_dark", "wrongly_bright"].map(|column| value(row, column))
+    };
+    for away in [0.0, 1e6] {
+        assert!((-3..=6).all(|exponent| site("error bound", away, exponent) == [0.0; 2]));
+    }
+    // From all sheets leaking to none.
+    for part in -7..=0 {
+        let [_, bright] = site("ε = 10⁻²", 0.0, -2 - part);
+        let alike = [("ε = 10⁻⁴", -4 - part), ("ε = 10⁻⁶", -6 - part)];
+        for (offset, exponent) in alike.into_iter().filter(|(_, e)| (-3..=6).contains(e)) {
+            assert_eq!(site(offset, 0.0, exponent)[1], bright, "{offset} at 10^{exponent}");
+        }
+        assert_eq!(bright == 0.0, part < -5, "ε 10^{part} of the scene");
+    }
+    // 6·10⁵ units from the origin a coordinate is rounded by 10⁻¹⁰ at most: far less than ε. At 10¹²
+    // it is by 10⁻⁴: ε = 10⁻⁶ is lost in it.
+    assert_eq!(site("ε = 10⁻⁶", 1e6, 0)[0], 0.0);
+    assert_eq!(site("ε = 10⁻⁶", 1e6, 6), site("none", 1e6, 6));
+    assert!(site("none (textbook hits)", 0.0, 0)[0] > 500.0);
+}
+
 /// 0.3, eq:ray-triangle: our test never leaks, Möller-Trumbore does at edges and at vertices.
 #[test]
 fn watertight() {
