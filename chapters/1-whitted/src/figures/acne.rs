@@ -6,7 +6,7 @@ use lancer_accel::ObvhsBvh2;
 use lancer_core::Rgb;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::image::ImageSize;
-use lancer_core::intersector::Intersector;
+use lancer_core::intersector::{Hit, Intersector};
 use lancer_core::scene::{Camera, Material, MaterialId, Mesh, Scene};
 use lancer_core::world::SurfacePoint;
 use lancer_figure::{
@@ -16,41 +16,31 @@ use lancer_figure::{
 
 use crate::naive::{epsilon_shadow_ray, moeller_trumbore};
 
-/// Whether something stands between a surface point and a light, seen from where a rule starts the ray.
-struct Rule {
-    name: &'static str,
-    start: fn(&SurfacePoint, DVec3) -> Ray,
-    color: fn() -> Color,
-    /// Asks Möller and Trumbore's test for any t > 0, not the index, which drops hits below their own error.
-    textbook_hits: bool,
-}
+/// Where a shadow ray to a light starts.
+type Start = fn(&SurfacePoint, DVec3) -> Ray;
 
-const RULES: [Rule; 7] = [
-    Rule {
-        name: "none (textbook hits)",
-        start: |surface, light| epsilon_shadow_ray(surface, light, 0.0),
-        color: || method_color("naive"),
-        textbook_hits: true,
-    },
-    rule("none", |p, light| epsilon_shadow_ray(p, light, 0.0), || category_color(0)),
-    rule("ε = 10⁻⁶", |p, light| epsilon_shadow_ray(p, light, 1e-6), || category_color(1)),
-    rule("ε = 10⁻⁴", |p, light| epsilon_shadow_ray(p, light, 1e-4), || category_color(3)),
-    rule("ε = 10⁻²", |p, light| epsilon_shadow_ray(p, light, 1e-2), || category_color(4)),
-    rule("10⁻⁶ max |p|", |p, light| relative(p, light), || category_color(5)),
-    rule("error bound", |p, light| p.spawn_to(light), || category_color(2)),
+/// The ways to start. The first is judged by Möller and Trumbore's test for any t > 0, the others by the index,
+/// which drops hits below their own error.
+const STARTS: [(&str, Start); 7] = [
+    ("none (textbook hits)", |p, light| epsilon_shadow_ray(p, light, 0.0)),
+    ("none", |p, light| epsilon_shadow_ray(p, light, 0.0)),
+    ("ε = 10⁻⁶", |p, light| epsilon_shadow_ray(p, light, 1e-6)),
+    ("ε = 10⁻⁴", |p, light| epsilon_shadow_ray(p, light, 1e-4)),
+    ("ε = 10⁻²", |p, light| epsilon_shadow_ray(p, light, 1e-2)),
+    ("10⁻⁶ max |p|", |p, light| {
+        epsilon_shadow_ray(p, light, 1e-6 * p.position.abs().max_element())
+    }),
+    ("error bound", |p, light| p.spawn_to(light)),
 ];
-const BOUNDED: usize = RULES.len() - 1;
+const BOUNDED: usize = STARTS.len() - 1;
 
-const fn rule(
-    name: &'static str,
-    start: fn(&SurfacePoint, DVec3) -> Ray,
-    color: fn() -> Color,
-) -> Rule {
-    Rule { name, start, color, textbook_hits: false }
-}
-
-fn relative(surface: &SurfacePoint, light: DVec3) -> Ray {
-    epsilon_shadow_ray(surface, light, 1e-6 * surface.position.abs().max_element())
+fn color(start: usize) -> Color {
+    match start {
+        0 => method_color("naive"),
+        BOUNDED => category_color(2),
+        1 | 2 => category_color(start - 1),
+        _ => category_color(start),
+    }
 }
 
 /// A level sheet over the floor: its middle, half its side and its height.
@@ -121,7 +111,8 @@ fn push_level(mesh: &mut Mesh, middle: DVec2, half: DVec2, height: f64, cells: u
 /// A point of the floor that a pixel sees, and what there is to know about it.
 struct Point {
     pixel: usize,
-    surface: SurfacePoint,
+    ray: Ray,
+    hit: Hit,
     shadowed: bool,
 }
 
@@ -177,33 +168,37 @@ impl Site {
             let origin = to_world.transform_point3(ray.origin);
             let ray = Ray::new(origin, to_world.transform_vector3(ray.direction));
             let hit = index.closest_hit(&ray, Interval::POSITIVE).expect("the floor has no hole");
-            let surface = floor.surface_at(&ray, &hit);
-            site.points.push(Point { pixel, surface, shadowed: depth > 0.0 });
+            site.points.push(Point { pixel, ray, hit, shadowed: depth > 0.0 });
         }
         site
     }
 
-    /// What each point of the floor is taken for: dark, or bright.
-    fn dark(&self, rule: &Rule) -> Vec<bool> {
+    /// The shadow rays of all points.
+    pub(super) fn shadow_rays(
+        &self,
+        start: impl Fn(&SurfacePoint, DVec3) -> Ray,
+    ) -> impl Iterator<Item = Ray> {
+        // The floor's triangles have the same numbers in the whole scene.
+        let surface = |point: &Point| self.scene.surface_at(&point.ray, &point.hit);
+        self.points.iter().map(move |point| start(&surface(point), self.light))
+    }
+
+    /// Whether each point is taken for dark.
+    pub(super) fn dark(&self, start: impl Fn(&SurfacePoint, DVec3) -> Ray) -> Vec<bool> {
         let index = ObvhsBvh2::build(&self.scene);
+        self.shadow_rays(start).map(|ray| index.occluded(&ray, Interval::up_to(1.0))).collect()
+    }
+
+    /// The same by Möller and Trumbore's test.
+    fn textbook_dark(&self, start: Start) -> Vec<bool> {
         let mesh = &self.scene.mesh;
-        let textbook = |ray: &Ray| {
-            let hits = (0..mesh.triangles.len()).map(|k| moeller_trumbore(mesh.corners(k), ray));
-            hits.flatten().any(|t| t < 1.0)
-        };
-        let dark = |point: &Point| {
-            let ray = (rule.start)(&point.surface, self.light);
-            if rule.textbook_hits {
-                textbook(&ray)
-            } else {
-                index.occluded(&ray, Interval::up_to(1.0))
-            }
-        };
-        self.points.iter().map(dark).collect()
+        let meets = |ray: &Ray, k| moeller_trumbore(mesh.corners(k), ray).is_some_and(|t| t < 1.0);
+        let dark = |ray: Ray| (0..mesh.triangles.len()).any(|k| meets(&ray, k));
+        self.shadow_rays(start).map(dark).collect()
     }
 
     /// How many points are dark though the light shines there, and how many bright though in a shadow.
-    fn wrong(&self, dark: &[bool]) -> [usize; 2] {
+    pub(super) fn wrong(&self, dark: &[bool]) -> [usize; 2] {
         [false, true].map(|shadowed| {
             let points = self.points.iter().zip(dark);
             points.filter(|(point, dark)| point.shadowed == shadowed && **dark != shadowed).count()
@@ -228,7 +223,7 @@ impl Site {
 /// How many of its sizes the scene stands away from the origin, and what that is called.
 const AWAY: [(f64, &str); 2] = [(0.0, "around the origin"), (1e6, "10⁶ sizes from the origin")];
 const EXPONENTS: std::ops::RangeInclusive<i32> = -3..=6;
-/// The pictures: sizes away, exponent of the scale, rule.
+/// The pictures: sizes away, exponent of the scale, start.
 const SHOWN: [(f64, i32, &str); 3] =
     [(1e6, 0, "none"), (1e6, 0, "ε = 10⁻²"), (1e6, 0, "error bound")];
 
@@ -244,21 +239,21 @@ pub fn make(effort: Effort) -> Finished {
         "wrongly_bright",
     ]);
     let mut charts = Row::new();
-    // Of each rule the largest share of wrong points at any site, in per cent, and the sites without one.
-    let (mut worst, mut right) = ([0.0_f64; RULES.len()], [0; RULES.len()]);
+    // Of each start the largest share of wrong points at any site, in per cent, and the sites without one.
+    let (mut worst, mut right) = ([0.0_f64; STARTS.len()], [0; STARTS.len()]);
     let (mut points, mut excluded) = (0, 0);
     let inset = effort.pick(Inset::new(26, 38, 24, 16), Inset::new(66, 94, 60, 40));
     let mut pictures = Montage::new().columns(3).inset(inset);
     for (away, place) in AWAY {
         let mut series: Vec<Series> =
-            RULES.iter().map(|rule| Series::new(rule.name, (rule.color)())).collect();
+            (0..STARTS.len()).map(|k| Series::new(STARTS[k].0, color(k))).collect();
         for exponent in EXPONENTS {
             let scale = 10.0_f64.powi(exponent);
             let site = Site::new(scale, away, size);
             points += site.points.len();
             excluded += site.excluded;
-            for (k, rule) in RULES.iter().enumerate() {
-                let dark = site.dark(rule);
+            for (k, &(name, start)) in STARTS.iter().enumerate() {
+                let dark = if k == 0 { site.textbook_dark(start) } else { site.dark(start) };
                 let wrong = site.wrong(&dark);
                 let share = wrong.map(|n| 100.0 * n as f64 / site.points.len() as f64);
                 let both = share[0] + share[1];
@@ -266,11 +261,11 @@ pub fn make(effort: Effort) -> Finished {
                 right[k] += usize::from(both == 0.0);
                 series[k] = series[k].clone().point(scale, both);
                 let counts = [site.points.len(), site.excluded, wrong[0], wrong[1]];
-                let names = [away.into(), scale.into(), rule.name.into()];
+                let names = [away.into(), scale.into(), name.into()];
                 data.push(names.into_iter().chain(counts.map(Into::into)));
-                if SHOWN.contains(&(away, exponent, rule.name)) {
-                    let title = format!("{}: {:.0} % wrong", rule.name, both);
-                    let tile = Tile::new(title, site.picture(size, &dark)).color((rule.color)());
+                if SHOWN.contains(&(away, exponent, name)) {
+                    let title = format!("{name}: {both:.0} % wrong");
+                    let tile = Tile::new(title, site.picture(size, &dark)).color(color(k));
                     pictures = pictures.tile(tile);
                 }
             }
@@ -290,14 +285,14 @@ pub fn make(effort: Effort) -> Finished {
         number(worst[BOUNDED]),
     );
     let counts: Vec<String> =
-        RULES.iter().zip(right).map(|(rule, right)| format!("{} {right}", rule.name)).collect();
+        STARTS.iter().zip(right).map(|((name, _), right)| format!("{name} {right}")).collect();
     let plate = Plate::new("0.2", "No epsilon fits every scale", claim, holds)
         .panel(pictures)
         .panel(charts)
         .note("Pictures", "scale 1, 10⁶ sizes from the origin: six level sheets over a tessellated floor, 3·10⁻⁶ (left, \
              back) to 0.3 (right, front) of its size high; the eye looks through them, light does not. Red: dark \
              though lit (acne); yellow: lit though in a shadow (leak)")
-        .note("Method", "all rules start at the same point, whose corners' weights give it, and move it along the \
+        .note("Method", "all start at the same point, whose corners' weights give it, and move it along the \
              normal; the index drops hits nearer than their own error bound, except for « textbook hits », \
              Möller and Trumbore's with t > 0")
         .note("Limits", format!(

@@ -7,6 +7,7 @@ mod descartes;
 mod local_model;
 mod quadratic;
 mod ray_tree;
+mod safety;
 mod slab;
 mod watertight;
 
@@ -30,6 +31,7 @@ pub const FIGURES: &[Figure] = &[
     Figure { id: "0.2", name: "acne", make: acne::make },
     Figure { id: "0.3", name: "watertight", make: watertight::make },
     Figure { id: "0.4", name: "slab", make: slab::make },
+    Figure { id: "0.5", name: "safety", make: safety::make },
     Figure { id: "1.2", name: "local-model", make: local_model::make },
     Figure { id: "1.5", name: "descartes", make: descartes::make },
     Figure { id: "1.6", name: "ray-tree", make: ray_tree::make },

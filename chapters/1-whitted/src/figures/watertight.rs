@@ -93,7 +93,7 @@ pub fn make(effort: Effort) -> Finished {
 }
 
 /// Rays from around the middle of a closed mesh.
-fn aimed(mesh: &Mesh, aim: usize, count: usize) -> Vec<Ray> {
+pub(super) fn aimed(mesh: &Mesh, aim: usize, count: usize) -> Vec<Ray> {
     let mut random = Uniform::new(3, aim as u32, 0);
     let mut unit = move || random.number();
     (0..count)
