@@ -89,7 +89,7 @@ impl HardBox {
         for k in 0..3 {
             let axis = (first + k) % 3;
             point[axis] = if k >= class.fixed() {
-                min[axis] + size[axis] * (below(random, 1025) as f64 / 1024.0)
+                min[axis] + size[axis] * ((1 + below(random, 1023)) as f64 / 1024.0)
             } else if below(random, 2) == 0 {
                 min[axis]
             } else {
@@ -123,16 +123,16 @@ impl HardBox {
         Self { bounds: Bounds3 { min, max }, point, direction, t }
     }
 
-    /// The same box seen along a direction of 30 random bits from a parameter of as many: the way between
-    /// them has 60 bits, so that plane − origin is rounded. The box moves by the rounding of the origin, which
-    /// keeps the touch exact.
+    /// The same box seen along a direction of 27 random bits from a parameter of 30: the way between them has
+    /// 57, so that plane − origin is rounded. The box moves by the rounding of the origin, which keeps the
+    /// touch exact.
     fn moved_away(self, random: &mut Uniform) -> Self {
-        let bits = 1 << 30;
-        let mut number = || (1 + below(random, bits)) as f64;
-        let t = number();
-        let length = DVec3::new(number(), number(), number()) / (bits as f64 / 32.0);
+        let mut bits = |count: u32| (1 + below(random, 1 << count)) as f64;
+        let t = bits(30);
+        let length = DVec3::new(bits(27), bits(27), bits(27)) / f64::from(1 << 22);
         let away = Self { direction: length.copysign(self.direction), t, ..self };
-        let point = away.direction.mul_add(DVec3::splat(t), away.ray().origin);
+        let [whole, rest] = away.way();
+        let point = away.ray().origin + whole + rest;
         let Bounds3 { min, max } = self.bounds;
         let at_min = self.point.cmpeq(min);
         let bounds = Bounds3 {
@@ -142,10 +142,16 @@ impl HardBox {
         Self { bounds, point, ..away }
     }
 
+    /// From the origin to the point, as two products without rounding.
+    fn way(&self) -> [DVec3; 2] {
+        let whole = self.direction.trunc();
+        [self.t * whole, self.t * (self.direction - whole)]
+    }
+
     /// The ray; it starts at the point itself where `t` is 0.
     pub fn ray(&self) -> Ray {
-        let origin = self.direction.mul_add(DVec3::splat(-self.t), self.point);
-        Ray::new(origin, self.direction)
+        let [whole, rest] = self.way();
+        Ray::new(self.point - rest - whole, self.direction)
     }
 }
 

@@ -6,8 +6,9 @@ use glam::{DVec3, swizzles::Vec3Swizzles};
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
 use lancer_core::sampling::Uniform;
 use lancer_figure::{
-    Anchor, Axis, CAPTION, Chart, Color, Drawing, Effort, Finished, INK, Montage, Pen, Picture,
-    Plate, Row, Series, Style, Table, Text, Tile, category_color, heat_color, method_color, number,
+    Anchor, Axis, CAPTION, Chart, Color, Drawing, Effort, Finished, HEADING, INK, Montage, Pen,
+    Picture, Plate, Row, Series, Style, Table, Text, Tile, category_color, heat_color,
+    method_color, number,
 };
 
 use crate::hard_boxes::{Class, HardBox};
@@ -61,9 +62,9 @@ pub fn make(effort: Effort) -> Finished {
     let mildest = (0..OURS).map(worst).fold(f64::INFINITY, f64::min);
     let holds = ours == 0 && mildest > 0.0;
     let claim = format!(
-        "Of {} rays that touch their box our test misses {ours}; each of five well-known forms misses at \
+        "Of {} rays that touch their box ours misses {ours}; each of five well-known forms misses at \
          least {mildest:.0} % of some class, min/max {:.0} %.",
-        count * Class::ALL.len(),
+        number((count * Class::ALL.len()) as f64),
         worst(0),
     );
 
@@ -241,7 +242,7 @@ fn rates_table(rates: Vec<[f64; FORMS.len()]>) -> Drawing {
             let [x, y] = pen.at([x, high[1] - CELL[1] * (row as f64 + 0.5)]);
             pen.canvas().text([x, y + 0.36 * CAPTION], text);
         };
-        let heading = Text::new("boxes missed (%)", CAPTION).bold();
+        let heading = Text::new("Boxes missed (%)", HEADING).bold();
         write(pen, 0.0, 0, heading);
         for (f, (form, _)) in FORMS.iter().enumerate() {
             let middle = LEFT + CELL[0] * (f as f64 + 0.5);
