@@ -1,96 +1,58 @@
-//! A box that a ray touches is never missed. The inputs are dyadic, so that the exact answer is known:
-//! every ray passes through the chosen point of the box at t = k without any rounding.
+//! A box that a ray touches is never missed; the exact answers come with [`HardBox`].
 
+use chapter_1::hard_boxes::{Class, HardBox};
+use chapter_1::naive::min_max_box;
 use glam::DVec3;
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
+use lancer_core::sampling::Uniform;
 
-use crate::random::Random;
-
-/// Where on the box a ray passes, and how it runs there.
-const CLASSES: [&str; 10] = [
-    "corner",
-    "edge",
-    "face",
-    "in a face plane, +0",
-    "in a face plane, -0",
-    "origin on a face plane",
-    "origin inside",
-    "corner at 1e6",
-    "point box",
-    "flat box",
-];
-
-/// A box and a ray that meets it.
-fn case(class: &str, random: &mut Random) -> (Bounds3, Ray) {
-    let grid = |random: &mut Random, size| {
-        DVec3::new(random.integer(size), random.integer(size), random.integer(size))
-    };
-    let mut min = grid(random, 1 << 12) / 64.0;
-    let mut size = (grid(random, 1 << 10).abs() + 1.0) / 64.0;
-    if class == "corner at 1e6" {
-        min += 1e6;
-    }
-    match class {
-        "point box" => size = DVec3::ZERO,
-        "flat box" => size[random.below(3)] = 0.0,
-        _ => (),
-    }
-    let max = min + size;
-    let mut direction = (grid(random, 1 << 12) + 0.5) / 128.0;
-    let corner = |random: &mut Random, axis: usize| {
-        if random.unit() < 0.5 { min[axis] } else { max[axis] }
-    };
-    let inside = |random: &mut Random, axis: usize| {
-        min[axis] + size[axis] * (random.below(1025) as f64 / 1024.0)
-    };
-    // How many of the coordinates lie on a plane of the box: 3 at a corner, 2 on an edge, 1 on a face.
-    let fixed = match class {
-        "edge" => 2,
-        "origin inside" => 0,
-        "corner" | "corner at 1e6" | "point box" => 3,
-        _ => 1,
-    };
-    let first = random.below(3);
-    let mut point = DVec3::ZERO;
-    for k in 0..3 {
-        let axis = (first + k) % 3;
-        point[axis] = if k < fixed { corner(random, axis) } else { inside(random, axis) };
-    }
-    let steps = match class {
-        "origin inside" | "origin on a face plane" => 0.0,
-        _ => random.below(64) as f64,
-    };
-    match class {
-        "in a face plane, +0" => direction[first] = 0.0,
-        "in a face plane, -0" => direction[first] = -0.0,
-        _ => (),
-    }
-    (Bounds3 { min, max }, Ray::new(point - steps * direction, direction))
-}
-
-fn misses(rays: usize, enters: impl Fn(&Bounds3, &Ray) -> bool) -> Vec<(&'static str, usize)> {
-    CLASSES
+fn misses(rays: usize, enters: impl Fn(&HardBox) -> bool) -> Vec<(&'static str, usize)> {
+    Class::ALL
         .iter()
-        .map(|&class| {
-            let mut random = Random::new(3);
-            let missed = (0..rays)
-                .filter(|_| {
-                    let (bounds, ray) = case(class, &mut random);
-                    !enters(&bounds, &ray)
-                })
-                .count();
-            (class, missed)
+        .map(|&(class, name)| {
+            let mut random = Uniform::new(3, 0, 0);
+            let boxes = (0..rays).map(|_| HardBox::new(class, &mut random));
+            (name, boxes.filter(|hard| !enters(hard)).count())
         })
         .collect()
 }
 
+fn enters(bounds: &Bounds3, ray: &Ray) -> bool {
+    Slabs::new(ray).enter(bounds.min, bounds.max, Interval::POSITIVE).is_some()
+}
+
 #[test]
-fn no_box_is_missed_in_any_of_ten_classes() {
-    let ours = misses(100_000, |bounds, ray| {
-        Slabs::new(ray).enter(bounds.min, bounds.max, Interval::POSITIVE).is_some()
+fn no_box_is_missed_in_any_of_thirteen_classes() {
+    // Rays that start in the touched point itself as well, into the box or away from it.
+    let ours = misses(100_000, |hard| {
+        let starts = [hard.direction, -hard.direction].map(|d| Ray::new(hard.point, d));
+        enters(&hard.bounds, &hard.ray()) && starts.iter().all(|ray| enters(&hard.bounds, ray))
     });
     for (class, missed) in ours {
         assert_eq!(missed, 0, "{class}");
+    }
+}
+
+/// The generator's promise: origin + t · direction is the point without any rounding. The product is split
+/// into two numbers, and the sum is exact if either of its terms can be taken away again. Only the
+/// denormal's way is lost.
+#[test]
+fn hard_boxes_are_touched_exactly() {
+    for (class, name) in Class::ALL {
+        let mut random = Uniform::new(4, 0, 0);
+        for _ in 0..10_000 {
+            let hard = HardBox::new(class, &mut random);
+            let HardBox { bounds: Bounds3 { min, max }, point, direction, t } = hard;
+            assert!((point.cmpge(min) & point.cmple(max)).all(), "{name}");
+            let origin = hard.ray().origin;
+            let way = t * direction;
+            let rest = direction.mul_add(DVec3::splat(t), -way);
+            let sum = origin + way;
+            let exact = (sum - origin).cmpeq(way) & (sum - way).cmpeq(origin);
+            let touched = exact & (sum + rest).cmpeq(point);
+            let lost = way.abs().cmplt(DVec3::splat(f64::MIN_POSITIVE));
+            assert!((touched | lost).all(), "{name}: {hard:?}");
+        }
     }
 }
 
@@ -98,18 +60,11 @@ fn no_box_is_missed_in_any_of_ten_classes() {
 /// lost to rounding.
 #[test]
 fn the_textbook_test_misses_boxes() {
-    let naive = misses(10_000, |bounds, ray| {
-        let inverse = DVec3::ONE / ray.direction;
-        let a = (bounds.min - ray.origin) * inverse;
-        let b = (bounds.max - ray.origin) * inverse;
-        let (mut near, mut far) = (0.0_f64, f64::INFINITY);
-        for axis in 0..3 {
-            near = near.max(a[axis].min(b[axis]));
-            far = far.min(a[axis].max(b[axis]));
-        }
-        near <= far
+    let naive = misses(10_000, |hard| {
+        let ray = hard.ray();
+        min_max_box(&hard.bounds, ray.origin, DVec3::ONE / ray.direction).is_some()
     });
-    for class in ["corner", "in a face plane, +0", "in a face plane, -0"] {
+    for class in ["corner", "in a face plane +0", "in a face plane −0"] {
         let missed = naive.iter().find(|(name, _)| *name == class).unwrap().1;
         assert!(missed > 100, "{class}: only {missed} of 10 000 missed");
     }

@@ -1,6 +1,6 @@
 //! One triangle and the inputs that break triangle tests, each with the answer to demand.
 
-use chapter_1::naive::signs_only;
+use chapter_1::naive::BySigns;
 use glam::{DVec2, DVec3};
 use lancer_core::geometry::{Ray, Shear, TriangleHit, intersect_triangle};
 
@@ -106,7 +106,7 @@ fn edge_on_rays_beside_a_triangle_are_missed() {
         let (corners, ray) =
             (corners.map(in_space), Ray::new(in_space(origin), in_space(direction)));
         assert_eq!(hit(corners, ray.origin, ray.direction), None, "{corners:?} {ray:?}");
-        naive += usize::from(signs_only(corners, &ray));
+        naive += usize::from(BySigns::new(&ray).plain(corners).is_some());
         tested += 1;
     }
     assert!(naive > 0, "the signs of the edge functions alone do as well");

@@ -2,5 +2,6 @@
 //! `README.md` beside this package's manifest.
 
 pub mod figures;
+pub mod hard_boxes;
 pub mod naive;
 pub mod scenes;

@@ -1,5 +1,6 @@
 //! The figures of the chapter, one file each. To add one: write its `make`, name it in [`FIGURES`].
 
+mod acne;
 mod aliasing;
 mod depth;
 mod descartes;
@@ -9,6 +10,8 @@ mod inverse_square;
 mod local_model;
 mod quadratic;
 mod ray_tree;
+mod safety;
+mod slab;
 mod watertight;
 
 use std::ops::AddAssign;
@@ -28,7 +31,10 @@ use lancer_whitted::{RayCounts, Recorder, Settings, Whitted};
 /// All figures, in the lesson's order.
 pub const FIGURES: &[Figure] = &[
     Figure { id: "0.1", name: "quadratic", make: quadratic::make },
+    Figure { id: "0.2", name: "acne", make: acne::make },
     Figure { id: "0.3", name: "watertight", make: watertight::make },
+    Figure { id: "0.4", name: "slab", make: slab::make },
+    Figure { id: "0.5", name: "safety", make: safety::make },
     Figure { id: "1.2", name: "local-model", make: local_model::make },
     Figure { id: "1.4", name: "inverse-square", make: inverse_square::make },
     Figure { id: "1.5", name: "descartes", make: descartes::make },

@@ -108,9 +108,9 @@ fn at(k: f64, solver: Solver) -> (f64, usize) {
     let (mut largest, mut lost) = (0.0_f64, 0);
     for k in [k, k + 1.0] {
         for turn in 0..48 {
-            let turned = |v: DVec3| turned(v, turn);
-            match solver(turned(SCALE * (k * DIRECTION + ASIDE)), turned(DIRECTION / 7.0)) {
-                Some(t) => largest = largest.max((t / (7.0 * SCALE * (k - 4.0)) - 1.0).abs()),
+            let (sphere, ray, exact) = far_sphere(k, turn);
+            match solver(sphere.center, ray.direction) {
+                Some(t) => largest = largest.max((t / exact - 1.0).abs()),
                 None => {
                     lost += 1;
                     largest = largest.max(1.0);
@@ -119,6 +119,14 @@ fn at(k: f64, solver: Solver) -> (f64, usize) {
         }
     }
     (largest, lost)
+}
+
+/// A sphere k / 5 radii away, turned by one of the 48 symmetries of the cube, with a ray from the origin and
+/// the exact t at which that enters it.
+pub(super) fn far_sphere(k: f64, turn: usize) -> (Sphere, Ray, f64) {
+    let center = turned(SCALE * (k * DIRECTION + ASIDE), turn);
+    let ray = Ray::new(DVec3::ZERO, turned(DIRECTION / 7.0, turn));
+    (sphere(center), ray, 7.0 * SCALE * (k - 4.0))
 }
 
 /// One of the 48 symmetries of the cube.

@@ -10,7 +10,7 @@ use lancer_figure::{
     category_color, method_color, number,
 };
 
-use crate::naive::{fused_edges, moeller_trumbore};
+use crate::naive::{BySigns, moeller_trumbore};
 
 type Test = fn([DVec3; 3], &Ray) -> bool;
 
@@ -19,8 +19,8 @@ fn watertight(corners: [DVec3; 3], ray: &Ray) -> bool {
 }
 
 const TESTS: [(&str, Test); 3] = [
-    ("Möller-Trumbore", moeller_trumbore),
-    ("fused edge functions", fused_edges),
+    ("Möller-Trumbore", |corners, ray| moeller_trumbore(corners, ray).is_some()),
+    ("fused edge functions", |corners, ray| BySigns::new(ray).fused(corners).is_some()),
     ("watertight", watertight),
 ];
 
@@ -85,7 +85,7 @@ pub fn make(effort: Effort) -> Finished {
             "eq:ray-triangle in f64, a closed sphere of {} triangles seen from inside, tried in order until \
              one is met; the edge functions of neighbours must agree to the last bit, which a fused \
              multiply-add breaks. The watertight test also works out t, its error bound and the weights, \
-             and prepares its ray anew for each triangle here",
+             and the edge functions prepare their ray anew for each triangle here",
             mesh.triangles.len()
         ))
         .note("Reference", "exact: no ray from inside leaves a closed mesh");
@@ -93,7 +93,7 @@ pub fn make(effort: Effort) -> Finished {
 }
 
 /// Rays from around the middle of a closed mesh.
-fn aimed(mesh: &Mesh, aim: usize, count: usize) -> Vec<Ray> {
+pub(super) fn aimed(mesh: &Mesh, aim: usize, count: usize) -> Vec<Ray> {
     let mut random = Uniform::new(3, aim as u32, 0);
     let mut unit = move || random.number();
     (0..count)

@@ -62,9 +62,15 @@ impl Slabs {
     #[inline]
     pub fn new(ray: &Ray) -> Self {
         let d = ray.direction;
+        // 1/d overflows for a denormal d, and a tiny way times ∞ would be taken for a long one: such an axis
+        // is not tested. For d = 0 the infinity is right.
+        let inverse = |d: f64| {
+            let inverse = 1.0 / d;
+            if d != 0.0 && inverse.is_infinite() { f64::NAN } else { inverse }
+        };
         Self {
             origin: ray.origin,
-            inverse: DVec3::ONE / d,
+            inverse: DVec3::new(inverse(d.x), inverse(d.y), inverse(d.z)),
             negative: [d.x.is_sign_negative(), d.y.is_sign_negative(), d.z.is_sign_negative()],
         }
     }
