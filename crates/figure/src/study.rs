@@ -99,6 +99,14 @@ impl Study {
         self.trial(label, knob).work
     }
 
+    /// The wall time of one contender's runs, in seconds.
+    ///
+    /// # Panics
+    /// If there is no such contender.
+    pub fn seconds(&self, label: &str, knob: &str) -> Spread {
+        self.trial(label, knob).seconds
+    }
+
     /// The counted work at which a curve first comes down to an error: between two of its points by a
     /// straight line in the logarithmic chart. `None` if it never does.
     ///
@@ -215,6 +223,8 @@ mod tests {
         assert_eq!(outcomes, [3.0, 2.5, 2.0]);
         assert_eq!(study.error("a", "2", "square"), 0.25);
         assert_eq!(study.work("b", "1"), 10);
+        let seconds = study.seconds("a", "2");
+        assert!(0.0 <= seconds.low && seconds.low <= seconds.mid && seconds.mid <= seconds.high);
         // From (10, 1) to (20, 1/2) the line has the slope −1: (40 / 3, 3 / 4) lies on it.
         let at = |label: &str, level: f64| study.work_at_error(label, "error", level);
         assert!((at("a", 0.75).unwrap() - 40.0 / 3.0).abs() < 1e-12);

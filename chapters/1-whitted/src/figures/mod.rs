@@ -4,9 +4,11 @@ mod aliasing;
 mod depth;
 mod descartes;
 mod local_model;
+mod pruning;
 mod quadratic;
 mod ray_tree;
 mod watertight;
+mod where_time_goes;
 
 use std::ops::AddAssign;
 
@@ -30,7 +32,9 @@ pub const FIGURES: &[Figure] = &[
     Figure { id: "1.5", name: "descartes", make: descartes::make },
     Figure { id: "1.6", name: "ray-tree", make: ray_tree::make },
     Figure { id: "1.7", name: "depth", make: depth::make },
+    Figure { id: "1.8", name: "pruning", make: pruning::make },
     Figure { id: "1.11", name: "aliasing", make: aliasing::make },
+    Figure { id: "1.13", name: "where-time-goes", make: where_time_goes::make },
 ];
 
 /// The picture as a display shows it.
