@@ -3,6 +3,7 @@
 mod aliasing;
 mod depth;
 mod descartes;
+mod exponent;
 mod local_model;
 mod pruning;
 mod quadratic;
@@ -29,6 +30,7 @@ pub const FIGURES: &[Figure] = &[
     Figure { id: "0.1", name: "quadratic", make: quadratic::make },
     Figure { id: "0.3", name: "watertight", make: watertight::make },
     Figure { id: "1.2", name: "local-model", make: local_model::make },
+    Figure { id: "1.3", name: "exponent", make: exponent::make },
     Figure { id: "1.5", name: "descartes", make: descartes::make },
     Figure { id: "1.6", name: "ray-tree", make: ray_tree::make },
     Figure { id: "1.7", name: "depth", make: depth::make },
@@ -71,4 +73,14 @@ fn trace_picture<C: Recorder + Default + Send + AddAssign>(
 /// Whitted's method and its rays, one sample in the centre of each pixel.
 fn whitted_picture(scene: &Scene, settings: Settings, size: ImageSize) -> Rendering<RayCounts> {
     trace_picture(scene, settings, size, PixelSampling::CENTER)
+}
+
+/// The exponent p of y ≈ c xᵖ: the slope between log axes, by least squares.
+fn fitted_exponent(points: &[(f64, f64)]) -> f64 {
+    let count = points.len() as f64;
+    let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
+    let mean_x = logs.iter().map(|(x, _)| x).sum::<f64>() / count;
+    let mean_y = logs.iter().map(|(_, y)| y).sum::<f64>() / count;
+    let covariance: f64 = logs.iter().map(|(x, y)| (x - mean_x) * (y - mean_y)).sum();
+    covariance / logs.iter().map(|(x, _)| (x - mean_x).powi(2)).sum::<f64>()
 }
