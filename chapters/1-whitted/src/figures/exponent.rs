@@ -10,8 +10,8 @@ use lancer_core::image::ImageSize;
 use lancer_core::optics::reflect;
 use lancer_core::scene::{Camera, Material, MaterialId, Mesh, PointLight, Scene, SphereObject};
 use lancer_figure::{
-    Axis, Chart, Drawing, Effort, Finished, INK, LABEL, MUTED, Montage, Pen, Plate, Row, Series,
-    Spread, Stroke, Table, Text, Tile, category_color, decimals, method_color, number,
+    Axis, Chart, Drawing, Effort, Finished, INK, LABEL, MUTED, Montage, Pen, Picture, Plate, Row,
+    Series, Spread, Stroke, Table, Text, Tile, category_color, decimals, method_color, number,
 };
 use lancer_whitted::Settings;
 
@@ -40,14 +40,13 @@ fn ball(material: Material, distance: f64, fov: f64, light: PointLight) -> Scene
 }
 
 /// A ball of paint and varnish, lit from the upper left.
-fn painted(rho_s: f64, shininess: f64, size: ImageSize) -> Tile {
+fn painted(rho_s: f64, shininess: f64, size: ImageSize) -> Picture {
     let paint = Material::matte(Rgb::new(0.32, 0.09, 0.07));
     let material = Material { rho_s: Rgb::splat(rho_s), shininess, ..paint };
     let position = DVec3::new(-6.0, 7.0, 12.0);
     let light = PointLight { position, intensity: Rgb::splat(position.length_squared()) };
     let scene = ball(material, 8.0, 15.5, light);
-    let picture = shown(&whitted_picture(&scene, Settings::default(), size).image);
-    Tile::new(format!("n = {shininess}"), picture)
+    shown(&whitted_picture(&scene, Settings::default(), size).image)
 }
 
 /// How far the eye and the light are from the ball that is measured: at infinity, nearly.
@@ -148,9 +147,12 @@ pub fn make(effort: Effort) -> Finished {
     let size = effort.pick(ImageSize::new(60, 60), ImageSize::new(180, 180));
     let row = |normalised: bool| {
         let tiles = EXPONENTS.iter().enumerate().map(|(k, &n)| {
-            let gain = if normalised { (n + 1.0) / (ALIKE_AT + 1.0) } else { 1.0 };
-            let tile = painted(RHO_S * gain, n, size).color(category_color(k));
-            tile.subtitle(format!("ρ_s {}", number(RHO_S * gain)))
+            let kept = RHO_S * (n + 1.0) / (ALIKE_AT + 1.0);
+            let (rho_s, title, subtitle) = match normalised {
+                false => (RHO_S, format!("n = {n}"), "same peak"),
+                true => (kept, format!("ρ_s {}", number(kept)), "same light"),
+            };
+            Tile::new(title, painted(rho_s, n, size)).subtitle(subtitle).color(category_color(k))
         });
         tiles.fold(Montage::new().columns(EXPONENTS.len()), Montage::tile)
     };
@@ -178,7 +180,7 @@ pub fn make(effort: Effort) -> Finished {
         .panel(Row::new().panel(1.0, lobes()))
         .panel(Row::new().panel(1.0, width_chart).panel(1.0, energy_chart))
         .note("Pictures", format!(
-            "above the slides' model, ρ_s = {RHO_S} for every n; below, ρ_s grows with n + 1, so that every \
+            "lobes in the colours of the balls. Above the slides' model, ρ_s {RHO_S} for every n; below, ρ_s grows with n + 1, so that every \
              highlight holds the same light. Same lamp and exposure; white is 1 and more"
         ))
         .note("Method", format!(
@@ -220,11 +222,10 @@ fn lobes() -> Drawing {
                 .map(|degrees| flat(value(degrees) * direction(degrees)))
                 .collect();
             pen.line(&points, Stroke::new(category_color(k), 3.0));
-            if n <= 30.0 {
-                // To the left of R, where the lobe is at half its length.
-                let at = 30.0 - exact_width(n).to_degrees();
+            // Right of R, where there is room between the lobes.
+            if let Some(&at) = [75.0, 60.0, 50.0].get(k) {
                 let text = Text::new(format!("n = {n}"), LABEL).color(category_color(k).for_text());
-                pen.label(flat(0.5 * direction(at)), [-40.0, 10.0], text);
+                pen.label(flat(value(at) * direction(at)), [40.0, 0.0], text);
             }
         }
         pen.surface([-1.0, 0.0], [1.2, 0.0]);

@@ -15,7 +15,7 @@ use lancer_whitted::{Call, Recorder, Settings, Whitted};
 use super::fitted_exponent;
 use crate::scenes;
 
-/// Brute force is not asked for more primitives: the longer a run, the less often it stays undisturbed.
+/// Brute force is not asked for more primitives.
 const MOST_LINEAR: usize = 1100;
 
 /// Everything that a picture asks its index, in order.
@@ -105,6 +105,10 @@ impl<'s> Case<'s> {
         self.scene.primitives().len()
     }
 
+    fn rays_per_pixel(&self) -> f64 {
+        self.queries.len() as f64 / self.size.pixels() as f64
+    }
+
     /// Primitives, and tests of boxes and primitives per ray.
     fn work(&self) -> (f64, f64) {
         let tests = (self.counts.boxes + self.counts.primitives) as f64;
@@ -136,8 +140,12 @@ fn picture<R: Recorder>(scene: &Scene, index: &Index, size: ImageSize, recorder:
 }
 
 pub fn make(effort: Effort) -> Finished {
-    let size = effort.pick(ImageSize::new(24, 24), ImageSize::new(64, 64));
-    let runs = effort.pick(2, 9);
+    // Brute force gets a smaller picture: the longer a run, the less often it stays undisturbed.
+    let size = |index: &str| match index {
+        "linear" => ImageSize::new(24, 24),
+        _ => effort.pick(ImageSize::new(24, 24), ImageSize::new(96, 96)),
+    };
+    let runs = effort.pick(2, 25);
     let levels = effort.pick([3, 5], [5, 8]);
     let generated = |name: &'static str, levels: u32| {
         (1..=levels).map(move |level| {
@@ -154,20 +162,22 @@ pub fn make(effort: Effort) -> Finished {
         .iter()
         .flat_map(|(name, scene)| INDEXES.map(|index| (*name, scene, index)))
         .filter(|(_, scene, index)| *index != "linear" || scene.primitives().len() <= MOST_LINEAR)
-        .map(|(name, scene, index)| Case::new(name, scene, index, size))
+        .map(|(name, scene, index)| Case::new(name, scene, index, size(index)))
         .collect();
 
     // All pictures, then all queries: what ran before has emptied the caches for both alike.
-    let parts: [(&str, fn(&Case) -> f64); 2] = [
-        ("whole", |case| picture(case.scene, &case.index, case.size, &mut ())),
-        ("queries", |case| case.replay()),
-    ];
-    let contenders = parts.iter().flat_map(|&(part, run)| {
+    let contenders = ["whole", "queries"].into_iter().flat_map(|part| {
         cases.iter().map(move |case| Contender {
             label: format!("{} {part}", case.label()),
             color: method_color(case.index_name),
             knob: case.primitives().to_string(),
-            run: Box::new(move || (run(case), case.queries.len() as u64)),
+            run: Box::new(move || {
+                let outcome = match part {
+                    "whole" => picture(case.scene, &case.index, case.size, &mut ()),
+                    _ => case.replay(),
+                };
+                (outcome, case.queries.len() as u64)
+            }),
         })
     });
     let (study, _) = Study::measure("rays", runs, contenders.collect(), |_| Vec::new());
@@ -263,7 +273,7 @@ pub fn make(effort: Effort) -> Finished {
             case.primitives().into(),
             case.index_name.into(),
             case.queries.len().into(),
-            (case.queries.len() as f64 / size.pixels() as f64).into(),
+            case.rays_per_pixel().into(),
             case.counts.boxes.into(),
             case.counts.primitives.into(),
             seconds(&study, case, "whole").into(),
@@ -281,7 +291,7 @@ pub fn make(effort: Effort) -> Finished {
         .note("« Temps de calcul important »", format!(
             "intersections and number of rays: {} rays per pixel. The exponents are fitted to the tests of \
              primitives and boxes by all rays of a picture",
-            span(&mut cases.iter().map(|case| case.queries.len() as f64 / size.pixels() as f64), 1)
+            span(&mut cases.iter().map(Case::rays_per_pixel), 1)
         ))
         .note("Method", format!(
             "algo:lr to depth 5, with shadow rays. All rays of a picture are recorded; then the picture and \
@@ -292,7 +302,10 @@ pub fn make(effort: Effort) -> Finished {
              and no shading comes between them. Pictures and queries start with equally cold caches, so that \
              the nanoseconds grow faster than the tests where the scene must be fetched. Building the index \
              is not counted")
-        .note("Settings", format!("{size}, 1 sample per pixel; brute force up to {MOST_LINEAR} primitives"))
+        .note("Settings", format!(
+            "{} (brute force, up to {MOST_LINEAR} primitives) and {}, 1 sample per pixel",
+            size("linear"), size("obvhs-bvh2")
+        ))
         .note("Reference", "closed form for brute force: a ray tests all n primitives, a shadow ray that is \
              stopped at least one");
     Finished { plate, data }
