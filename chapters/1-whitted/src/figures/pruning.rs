@@ -190,7 +190,7 @@ impl Average {
 }
 
 pub fn make(effort: Effort) -> Finished {
-    let size = effort.pick(ImageSize::new(32, 32), ImageSize::new(140, 140));
+    let size = effort.pick(ImageSize::new(32, 32), ImageSize::new(120, 120));
     let trials = [
         Trial::new("whitted", scenes::whitted(), size, 0.01, [2.0, 0.1, 0.1]),
         Trial::new("27 glass balls", glass_balls(), size, 0.03, [4.0, 0.05, 0.1]),

@@ -294,9 +294,9 @@ pub fn make(effort: Effort) -> Finished {
             span(&mut cases.iter().map(Case::rays_per_pixel), 1)
         ))
         .note("Method", format!(
-            "algo:lr to depth 5, with shadow rays. All rays of a picture are recorded; then the picture and \
-             the bare queries of its rays are timed in turn, {runs} times each, and the share is that of the \
-             least times"
+            "algo:lr to depth 5, with shadow rays. All rays of a picture are recorded; then all pictures and, \
+             after them, the bare queries of their rays are timed, {runs} times in turn, and the share is that \
+             of the least times"
         ))
         .note("Limits", "an estimate of this code on this machine: the bare queries read their rays from memory, \
              and no shading comes between them. Pictures and queries start with equally cold caches, so that \
