@@ -11,7 +11,7 @@ use lancer_core::render::{Cancelled, Control, Rendering, render_pixels};
 use lancer_core::sampling::{Pattern, PixelSampling};
 use lancer_core::scene::{Material, MaterialId, PointLight, Scene};
 use lancer_core::world::World;
-use lancer_whitted::{RayCounts, Settings, Whitted};
+use lancer_whitted::{AtLimit, RayCounts, Settings, Whitted};
 
 use crate::meshes::scene_of;
 
@@ -31,10 +31,10 @@ fn scene() -> Scene {
     scene
 }
 
-fn render(threads: usize, tile: u32, pattern: Pattern) -> Rendering<RayCounts> {
+fn render(threads: usize, tile: u32, pattern: Pattern, settings: Settings) -> Rendering<RayCounts> {
     let scene = scene();
     let index = ObvhsBvh2::build(&scene);
-    let method = Whitted::new(World { scene: &scene, index: &index }, Settings::default());
+    let method = Whitted::new(World { scene: &scene, index: &index }, settings);
     let size = ImageSize::new(61, 47);
     let rays = scene.camera.primary_rays(size);
     let sampling = PixelSampling { pattern, samples: 4, seed: 9 };
@@ -50,17 +50,27 @@ fn render(threads: usize, tile: u32, pattern: Pattern) -> Rendering<RayCounts> {
 
 #[test]
 fn pictures_do_not_depend_on_threads_or_tiles() {
-    for pattern in [Pattern::Regular, Pattern::Jittered, Pattern::Owen] {
-        let one = render(1, 16, pattern);
+    let roulette =
+        Settings { max_depth: 100, min_weight: 0.2, at_limit: AtLimit::Roulette { seed: 3 } };
+    for (pattern, settings) in [
+        (Pattern::Regular, Settings::default()),
+        (Pattern::Jittered, Settings::default()),
+        (Pattern::Owen, Settings::default()),
+        (Pattern::Owen, roulette),
+    ] {
+        let one = render(1, 16, pattern, settings);
         assert!(
             one.counts.refracted > 1000 && one.counts.shadow > 1000,
             "the test traces something"
         );
         for threads in [2, 3, 7] {
-            assert!(render(threads, 16, pattern) == one, "{threads} threads, {pattern:?}");
+            assert!(
+                render(threads, 16, pattern, settings) == one,
+                "{threads} threads, {pattern:?}"
+            );
         }
         for tile in [1, 8, 17, 64] {
-            assert!(render(2, tile, pattern) == one, "tiles of {tile}, {pattern:?}");
+            assert!(render(2, tile, pattern, settings) == one, "tiles of {tile}, {pattern:?}");
         }
     }
 }

@@ -148,6 +148,42 @@ fn parallel_mirrors_sum_a_geometric_series() {
     assert_eq!((radiance.x, counts.total()), (1.875, 4));
 }
 
+/// Russian roulette between the mirrors of the geometric series, whose rays have the weights 1, 1/2, 1/4 …:
+/// below a minimum weight of 1/2 each bounce survives with probability ½ and its answer counts ½ again.
+/// With K the bounces after the first, P(K = k) = ½^(k+1), the answer is 1 + ½ (1 + K): its mean is 2, the
+/// series to infinity, and its variance Var(K) / 4 = 2 / 4. A false alarm in a million.
+#[test]
+fn roulette_is_right_on_average() {
+    let mut scene = scene_of(Mesh::default());
+    plate(&mut scene, 0.0, 1.0, 0);
+    plate(&mut scene, 1.0, -1.0, 0);
+    scene.materials[0] =
+        Material { k_s: Rgb::splat(0.5), emission: Rgb::ONE, ..Material::matte(Rgb::ZERO) };
+    scene.background = Rgb::splat(3.0);
+    let ray = Ray::new(DVec3::new(0.0, 0.5, 0.0), DVec3::new(0.6, 0.8, 0.0));
+    let roulette = |max_depth, min_weight, seed| Settings {
+        max_depth,
+        min_weight,
+        at_limit: AtLimit::Roulette { seed },
+    };
+    let count = 20_000;
+    let mut mean = 0.0;
+    for seed in 0..count {
+        let (radiance, counts) = trace(&scene, roulette(1000, 0.5, seed), ray);
+        assert_eq!(radiance.x, 1.0 + 0.5 * counts.mirror as f64);
+        mean += radiance.x / count as f64;
+    }
+    assert!((mean - 2.0).abs() < 4.9 * (0.5 / count as f64).sqrt(), "{mean}");
+    // No ray is light enough to play, or all are too deep: then it is black's picture.
+    for (max_depth, min_weight) in [(3, 0.125), (0, 1.0)] {
+        let black = Settings { max_depth, min_weight, at_limit: AtLimit::Black };
+        assert_eq!(
+            trace(&scene, roulette(max_depth, min_weight, 7), ray),
+            trace(&scene, black, ray)
+        );
+    }
+}
+
 /// fig:ray-tree: glass that reflects as well splits every ray in two; five bounces make 63 rays.
 #[test]
 fn a_full_binary_tree_of_depth_five_has_63_rays() {

@@ -182,6 +182,26 @@ fn inverse_square() {
     assert!(value(at("square", 1.0, 4.0), "error") < 0.3 * value(square, "error"));
 }
 
+/// 1.3, eq:local: the widths of the closed form, (cos θ)ⁿ = ½, are within what the pictures allow, and the
+/// light in the highlight is 2π/(n + 1).
+#[test]
+fn exponent() {
+    let rows = rows(&made("1.3"));
+    assert_eq!(rows.len(), 7);
+    for row in &rows {
+        let n = value(row, "n");
+        let within = |angle: &str| value(row, angle).cos().powf(n);
+        // The wider the angle the less is left there.
+        assert!(within("greatest") <= 0.5 && 0.5 <= within("least"), "{row:?}");
+        let light = std::f64::consts::TAU / (n + 1.0);
+        assert!((value(row, "integral") / light - 1.0).abs() < 1e-4, "{row:?}");
+    }
+    // 60 degrees, the one half-width that everybody knows, to a hundredth.
+    let first = value(&rows[0], "half_width").to_degrees();
+    assert_eq!(value(&rows[0], "n"), 1.0);
+    assert!((first - 60.0).abs() < 0.6, "{first}");
+}
+
 /// 1.5, eq:descartes at the table's own angles.
 #[test]
 fn descartes() {
@@ -275,6 +295,38 @@ fn diffuse() {
     }
 }
 
+/// 1.8, algo:lr and eq:recursion: a ray that is not followed only takes light, so that depth and weight
+/// approach the whole tree from below and at a growing price; roulette's mean is right, with a false alarm in
+/// a million by Student's t of 31 degrees of freedom.
+#[test]
+fn pruning() {
+    let rows = rows(&made("1.8"));
+    for curve in rows.chunk_by(|a, b| field(a, "method") == field(b, "method")) {
+        let rule = field(&curve[0], "method");
+        for pair in curve.windows(2) {
+            assert!(value(&pair[1], "rays") >= value(&pair[0], "rays"), "{pair:?}");
+            if rule != "roulette" {
+                assert!(value(&pair[1], "RMSE") <= value(&pair[0], "RMSE"), "{pair:?}");
+                let (before, after) = (value(&pair[0], "bias"), value(&pair[1], "bias"));
+                // The reference itself lacks the rays of weights below 10⁻⁶, which a deep tree has.
+                assert!(before <= after && after < 1e-6, "{pair:?}");
+            }
+        }
+        assert!(value(&curve[0], "z").abs() < 6.08);
+    }
+    // 14 rays of the weight are worth more than the depth's 16 among the glass balls.
+    let error = |method: &str, knob: &str| {
+        let row = rows.iter().find(|row| {
+            [field(row, "scene"), field(row, "method"), field(row, "knob")]
+                == ["27 glass balls", method, knob]
+        });
+        let row = row.expect("a row");
+        (value(row, "rays"), value(row, "RMSE"))
+    };
+    let (depth, weight) = (error("depth", "4"), error("weight", "0.05"));
+    assert!(weight.0 < depth.0 && weight.1 < 0.2 * depth.1);
+}
+
 /// 1.11: a pixel's samples cost what they cost in any layout, and more samples err less in each.
 #[test]
 fn aliasing() {
@@ -283,6 +335,33 @@ fn aliasing() {
         for pair in curve.windows(2) {
             assert_eq!(value(&pair[1], "samples"), 4.0 * value(&pair[0], "samples"));
             assert!(value(&pair[1], "RMSE") < value(&pair[0], "RMSE"));
+        }
+    }
+}
+
+/// 1.13: both indexes answer the same rays; brute force tests every primitive for a ray that nothing stops,
+/// and the hierarchy far fewer where there are many.
+#[test]
+fn where_time_goes() {
+    let rows = rows(&made("1.13"));
+    let linear: Vec<_> = rows.iter().filter(|row| field(row, "index") == "linear").collect();
+    assert!(linear.len() >= 6);
+    for brute in linear {
+        let tree = rows.iter().find(|row| {
+            field(row, "index") == "obvhs-bvh2"
+                && field(row, "scene") == field(brute, "scene")
+                && field(row, "primitives") == field(brute, "primitives")
+        });
+        let tree = tree.expect("the same picture by the hierarchy");
+        assert_eq!(field(tree, "rays"), field(brute, "rays"));
+        let (n, rays) = (value(brute, "primitives"), value(brute, "rays"));
+        let tests = value(brute, "primitive_tests");
+        // Of a picture's rays a half at most are shadow rays that something stops before the last primitive.
+        assert!(0.5 * n * rays <= tests && tests <= n * rays, "{brute:?}");
+        assert_eq!(field(brute, "box_tests"), "0");
+        if n > 500.0 {
+            let work = value(tree, "box_tests") + value(tree, "primitive_tests");
+            assert!(work < 0.1 * tests, "{tree:?}");
         }
     }
 }

@@ -16,6 +16,7 @@ pub struct BarChart {
     categories: Vec<String>,
     series: Vec<(String, Color, Vec<f64>)>,
     stacked: bool,
+    first_printed: bool,
 }
 
 const BAR: f64 = 26.0;
@@ -33,6 +34,7 @@ impl BarChart {
             categories: categories.into_iter().map(Into::into).collect(),
             series: Vec::new(),
             stacked: false,
+            first_printed: false,
         }
     }
 
@@ -66,23 +68,32 @@ impl BarChart {
         Self { stacked: true, ..self }
     }
 
+    /// With the first part's value at the end of a stacked bar instead of the sum.
+    pub fn first_printed(self) -> Self {
+        Self { first_printed: true, ..self }
+    }
+
     fn group_height(&self) -> f64 {
         let bars = if self.stacked { 1 } else { self.series.len() };
         BAR * bars as f64 + GROUP_GAP
     }
 
-    /// The values printed at the bars of a category: of each, or of all together.
-    fn printed(&self, category: usize) -> Vec<f64> {
-        let values: Vec<f64> = self.series.iter().map(|(_, _, values)| values[category]).collect();
-        if self.stacked { vec![values.iter().sum()] } else { values }
+    /// The bars of a category, of each series or of all together: where they end and what is printed there.
+    fn printed(&self, category: usize) -> Vec<(f64, f64)> {
+        let values = self.series.iter().map(|(_, _, values)| values[category]);
+        if !self.stacked {
+            return values.map(|value| (value, value)).collect();
+        }
+        let sum = values.clone().sum();
+        vec![(sum, values.take(1).find(|_| self.first_printed).unwrap_or(sum))]
     }
 
-    fn all_printed(&self) -> impl Iterator<Item = f64> {
+    fn all_printed(&self) -> impl Iterator<Item = (f64, f64)> {
         (0..self.categories.len()).flat_map(|category| self.printed(category))
     }
 
     fn widest_value(&self) -> f64 {
-        let widths = self.all_printed().map(|value| Text::new(number(value), TICK).width());
+        let widths = self.all_printed().map(|(_, value)| Text::new(number(value), TICK).width());
         // The tick of the longest bar is centred on its end.
         widths.fold(2.0 * TICK, f64::max)
     }
@@ -119,9 +130,9 @@ impl BarChart {
             canvas.rect(Rect::new(zero + left, y + 2.0, length, BAR - 4.0), Style::fill(*color));
             before += length;
         }
-        for (i, value) in self.printed(category).into_iter().enumerate() {
+        for (i, (end, value)) in self.printed(category).into_iter().enumerate() {
             let baseline = top + (i as f64 + 0.5) * BAR + CAP_HEIGHT / 2.0 * TICK;
-            canvas.text([scale.at(value) + 8.0, baseline], Text::new(number(value), TICK));
+            canvas.text([scale.at(end) + 8.0, baseline], Text::new(number(value), TICK));
         }
     }
 }
@@ -157,7 +168,7 @@ impl Panel for BarChart {
         let bottom = top + self.categories.len() as f64 * self.group_height() + GROUP_GAP;
         // The longest bar leaves room for its value.
         let right = rect.right() - self.widest_value() - 8.0;
-        let longest = self.all_printed().fold(f64::MIN_POSITIVE, f64::max);
+        let longest = self.all_printed().map(|(end, _)| end).fold(f64::MIN_POSITIVE, f64::max);
         let scale = Axis::linear("").between(0.0, longest).scale([], left, right);
         let below = bottom + 9.0 + CAP_HEIGHT * TICK;
         for tick in scale.level_ticks() {
@@ -195,6 +206,16 @@ mod tests {
             chart.draw(&mut canvas, Rect::new(0.0, 0.0, 600.0, height));
             assert_eq!(canvas.faults(), []);
         }
+    }
+
+    #[test]
+    fn a_stacked_bar_prints_its_sum_or_its_first_part() {
+        let stacked = BarChart::new("%", ["a"])
+            .series("first", INK, [90.5])
+            .series("second", MUTED, [9.25])
+            .stacked();
+        assert_eq!(stacked.printed(0), [(99.75, 99.75)]);
+        assert_eq!(stacked.first_printed().printed(0), [(99.75, 90.5)]);
     }
 
     #[test]

@@ -35,6 +35,7 @@ pub struct MethodCurve {
 /// by side, all axes logarithmic, the better the lower and the further left.
 #[derive(Clone, Debug)]
 pub struct SpeedError {
+    subject: String,
     curves: Vec<MethodCurve>,
     work_unit: String,
     error_name: String,
@@ -46,12 +47,18 @@ impl SpeedError {
     /// A chart without curves: the unit of the counted work (`rays`, `tests`) and the name of the error.
     pub fn new(work_unit: impl Into<String>, error_name: impl Into<String>) -> Self {
         Self {
+            subject: String::new(),
             curves: Vec::new(),
             work_unit: work_unit.into(),
             error_name: error_name.into(),
             residual: None,
             slope: None,
         }
+    }
+
+    /// With the name of what is measured, such as a scene, before the charts' titles.
+    pub fn subject(self, subject: impl Into<String>) -> Self {
+        Self { subject: subject.into(), ..self }
     }
 
     /// With one more method; a second curve of the same colour is dashed.
@@ -79,6 +86,10 @@ impl SpeedError {
     }
 
     fn chart(&self, title: &str, axis: String, cost: fn(&CurvePoint) -> Spread) -> Chart {
+        let title = match self.subject.as_str() {
+            "" => title.to_owned(),
+            subject => format!("{subject}: {}", title.to_lowercase()),
+        };
         let mut chart = Chart::new(Axis::log(axis), Axis::log(&self.error_name))
             .title(title)
             .better_lower_left();
@@ -151,6 +162,14 @@ mod tests {
         }
         assert!(svg.contains("work (rays)") && svg.contains("time (s)"));
         assert!(svg.contains("stroke-dasharray=\"10 6\""), "the second of a method is dashed");
+    }
+
+    #[test]
+    fn both_panels_name_their_subject() {
+        let mut canvas = Canvas::new(1300.0, 600.0);
+        chart().subject("room").draw(&mut canvas, Rect::new(0.0, 0.0, 1300.0, 600.0));
+        let svg = canvas.to_svg();
+        assert!(svg.contains("room: counted work") && svg.contains("room: time"));
     }
 
     #[test]

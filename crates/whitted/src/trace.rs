@@ -1,6 +1,7 @@
 use lancer_core::Rgb;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::optics::{reflect, refract};
+use lancer_core::sampling::Uniform;
 use lancer_core::world::{SurfacePoint, World};
 
 use crate::appel::Lighting;
@@ -11,9 +12,10 @@ use crate::recorder::{Call, RayKind, Recorder};
 pub struct Settings {
     /// Max_Prof: the largest number of bounces between the eye and a surface.
     pub max_depth: u32,
-    /// A ray that would count less than this in its pixel is not traced; 0 traces all.
+    /// A ray that would count less than this in its pixel is not traced, unless it survives
+    /// [`AtLimit::Roulette`]; 0 traces all.
     pub min_weight: f64,
-    /// The colour of a ray that is not traced.
+    /// What becomes of a ray at the limit.
     pub at_limit: AtLimit,
 }
 
@@ -24,7 +26,7 @@ impl Default for Settings {
     }
 }
 
-/// « choix discutable mais que mettre ? »: the radiance of a ray that is not traced.
+/// « choix discutable mais que mettre ? »: the radiance of a ray at the limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AtLimit {
     /// Black, the slide's choice.
@@ -33,6 +35,16 @@ pub enum AtLimit {
     Ambient,
     /// The background, as if the ray met nothing.
     Background,
+    /// Russian roulette: a ray of weight w below [`Settings::min_weight`] is traced with probability
+    /// p = w / `min_weight`, and its answer divided by p; otherwise it is black. What is divided by p
+    /// weighs w / p = `min_weight` again.
+    ///
+    /// The mean over all seeds is the picture without a minimum weight (Arvo and Kirk, *Particle Transport
+    /// and Image Synthesis*, 1990). A ray beyond [`Settings::max_depth`] is black.
+    Roulette {
+        /// Picks one of the random pictures; who survives follows from it and the ray alone.
+        seed: u64,
+    },
 }
 
 /// Radiance along a ray.
@@ -84,24 +96,28 @@ impl<'a> Whitted<'a> {
     }
 
     fn lr<R: Recorder>(&self, call: Call, recorder: &mut R) -> Rgb {
-        let World { scene, index } = self.lighting.world;
         let radiance =
             if call.depth > self.settings.max_depth || call.weight < self.settings.min_weight {
-                recorder.cut(&call);
-                self.at_limit()
+                self.at_limit(call, recorder)
             } else {
-                recorder.enter(&call);
-                match index.closest_hit(&call.ray, Interval::POSITIVE) {
-                    Some(hit) => {
-                        let surface = scene.surface_at(&call.ray, &hit);
-                        recorder.hit(&hit, &surface);
-                        self.at_surface(&call, &surface, recorder)
-                    }
-                    None => scene.background,
-                }
+                self.follow(&call, recorder)
             };
         recorder.leave(radiance);
         radiance
+    }
+
+    #[inline]
+    fn follow<R: Recorder>(&self, call: &Call, recorder: &mut R) -> Rgb {
+        let World { scene, index } = self.lighting.world;
+        recorder.enter(call);
+        match index.closest_hit(&call.ray, Interval::POSITIVE) {
+            Some(hit) => {
+                let surface = scene.surface_at(&call.ray, &hit);
+                recorder.hit(&hit, &surface);
+                self.at_surface(call, &surface, recorder)
+            }
+            None => scene.background,
+        }
     }
 
     #[inline]
@@ -142,10 +158,21 @@ impl<'a> Whitted<'a> {
         recursion(local, k_s, reflected, k_t, refracted)
     }
 
-    fn at_limit(&self) -> Rgb {
+    fn at_limit<R: Recorder>(&self, call: Call, recorder: &mut R) -> Rgb {
+        let Settings { max_depth, min_weight, at_limit } = self.settings;
+        if let AtLimit::Roulette { seed } = at_limit
+            && call.depth <= max_depth
+        {
+            let survival = call.weight / min_weight;
+            if Uniform::of_ray(seed, &call.ray).number() < survival {
+                let survivor = Call { weight: min_weight, ..call };
+                return self.follow(&survivor, recorder) / survival;
+            }
+        }
+        recorder.cut(&call);
         let scene = self.lighting.world.scene;
-        match self.settings.at_limit {
-            AtLimit::Black => Rgb::ZERO,
+        match at_limit {
+            AtLimit::Black | AtLimit::Roulette { .. } => Rgb::ZERO,
             AtLimit::Ambient => scene.ambient,
             AtLimit::Background => scene.background,
         }

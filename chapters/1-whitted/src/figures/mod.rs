@@ -5,14 +5,17 @@ mod aliasing;
 mod depth;
 mod descartes;
 mod diffuse;
+mod exponent;
 mod indirect;
 mod inverse_square;
 mod local_model;
+mod pruning;
 mod quadratic;
 mod ray_tree;
 mod safety;
 mod slab;
 mod watertight;
+mod where_time_goes;
 
 use std::ops::AddAssign;
 
@@ -36,13 +39,16 @@ pub const FIGURES: &[Figure] = &[
     Figure { id: "0.4", name: "slab", make: slab::make },
     Figure { id: "0.5", name: "safety", make: safety::make },
     Figure { id: "1.2", name: "local-model", make: local_model::make },
+    Figure { id: "1.3", name: "exponent", make: exponent::make },
     Figure { id: "1.4", name: "inverse-square", make: inverse_square::make },
     Figure { id: "1.5", name: "descartes", make: descartes::make },
     Figure { id: "1.6", name: "ray-tree", make: ray_tree::make },
     Figure { id: "1.7", name: "depth", make: depth::make },
+    Figure { id: "1.8", name: "pruning", make: pruning::make },
     Figure { id: "1.9", name: "indirect", make: indirect::make },
     Figure { id: "1.10", name: "diffuse", make: diffuse::make },
     Figure { id: "1.11", name: "aliasing", make: aliasing::make },
+    Figure { id: "1.13", name: "where-time-goes", make: where_time_goes::make },
 ];
 
 /// The picture as a display shows it.
@@ -86,4 +92,14 @@ fn trace_picture<C: Recorder + Default + Send + AddAssign>(
 /// Whitted's method and its rays, one sample in the centre of each pixel.
 fn whitted_picture(scene: &Scene, settings: Settings, size: ImageSize) -> Rendering<RayCounts> {
     trace_picture(scene, settings, size, PixelSampling::CENTER)
+}
+
+/// The exponent p of y ≈ c xᵖ: the slope between log axes, by least squares.
+fn fitted_exponent(points: &[(f64, f64)]) -> f64 {
+    let count = points.len() as f64;
+    let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
+    let mean_x = logs.iter().map(|(x, _)| x).sum::<f64>() / count;
+    let mean_y = logs.iter().map(|(_, y)| y).sum::<f64>() / count;
+    let covariance: f64 = logs.iter().map(|(x, y)| (x - mean_x) * (y - mean_y)).sum();
+    covariance / logs.iter().map(|(x, _)| (x - mean_x).powi(2)).sum::<f64>()
 }

@@ -1,0 +1,324 @@
+//! 1.8: three ways to end the recursion, and what each ray they save costs in error.
+
+use glam::DVec3;
+use lancer_core::geometry::Sphere;
+use lancer_core::image::{Image, ImageSize};
+use lancer_core::metric::{absolute_error_map, compare, rmse};
+use lancer_core::render::Rendering;
+use lancer_core::scene::{Scene, SphereObject};
+use lancer_figure::{
+    Axis, Chart, Color, Contender, Effort, Finished, HeatScale, Montage, Plate, Row, Series, Study,
+    Table, Tile, Value, category_color, decimals, method_color, number,
+};
+use lancer_whitted::{AtLimit, Settings};
+
+use super::{shown, whitted_picture};
+use crate::scenes;
+
+/// Max_Prof of the rules that go by weight: so deep that no ray of these scenes comes there.
+const ENDLESS: u32 = 1000;
+/// Below this a ray changes no picture that is looked at here.
+const NEGLIGIBLE: f64 = 1e-6;
+
+fn depth(max_depth: f64) -> Settings {
+    Settings { max_depth: max_depth as u32, min_weight: 0.0, at_limit: AtLimit::Black }
+}
+
+fn weight(min_weight: f64) -> Settings {
+    Settings { max_depth: ENDLESS, min_weight, at_limit: AtLimit::Black }
+}
+
+fn roulette(min_weight: f64, seed: u64) -> Settings {
+    Settings { at_limit: AtLimit::Roulette { seed }, ..weight(min_weight) }
+}
+
+/// A way to end the recursion, given its limit, and the limits tried.
+struct Rule {
+    name: &'static str,
+    settings: fn(f64) -> Settings,
+    limits: &'static [f64],
+    color: fn() -> Color,
+}
+
+const RULES: [Rule; 3] = [
+    Rule {
+        name: "depth",
+        settings: depth,
+        limits: &[0.0, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 10.0],
+        color: || category_color(0),
+    },
+    Rule { name: "weight", settings: weight, limits: WEIGHTS, color: || category_color(2) },
+    Rule {
+        name: "roulette",
+        settings: |limit| roulette(limit, 0),
+        limits: WEIGHTS,
+        color: || category_color(3),
+    },
+];
+const WEIGHTS: &[f64] = &[0.8, 0.4, 0.1, 0.05, 0.01, 0.005, 0.001];
+
+/// Pictures by roulette that are averaged, and the |z| that their mean exceeds once in a million if it
+/// is right: Student's t with 31 degrees of freedom.
+const SEEDS: u64 = 32;
+const Z: f64 = 6.08;
+
+/// Whitted's scene with a stack of glass balls in place of its three.
+fn glass_balls() -> Scene {
+    let mut scene = scenes::whitted();
+    let material = scene.spheres[0].material;
+    let balls = (0..27).map(|k| {
+        let [x, y, z] = [k % 3, k / 3 % 3, k / 9].map(f64::from);
+        let center = DVec3::new(1.1 * (x - 1.0), 0.5 + 1.02 * y, 1.2 - 1.3 * z);
+        SphereObject { shape: Sphere { center, radius: 0.5 }, material }
+    });
+    scene.spheres = balls.collect();
+    scene
+}
+
+/// What is measured in one scene.
+struct Trial {
+    name: &'static str,
+    scene: Scene,
+    size: ImageSize,
+    reference: Image,
+    reference_rays: u64,
+    /// The reference with a ten times larger minimum weight.
+    rougher: Image,
+    study: Study,
+    pictures: Vec<Image>,
+    /// The error at which the rules are compared.
+    level: f64,
+    /// A limit of each rule, with about as many rays.
+    alike: [f64; 3],
+}
+
+impl Trial {
+    fn new(name: &'static str, scene: Scene, size: ImageSize, level: f64, alike: [f64; 3]) -> Self {
+        let render = |settings| whitted_picture(&scene, settings, size);
+        let Rendering { image: reference, counts } = render(weight(NEGLIGIBLE));
+        let rougher = render(weight(10.0 * NEGLIGIBLE)).image;
+        let contenders = RULES.iter().flat_map(|rule| {
+            rule.limits.iter().map(move |&limit| Contender {
+                label: rule.name.to_owned(),
+                color: (rule.color)(),
+                knob: limit.to_string(),
+                run: Box::new(move || {
+                    let rendering = render((rule.settings)(limit));
+                    (rendering.image, rendering.counts.total())
+                }),
+            })
+        });
+        let (study, pictures) = Study::measure("rays", 3, contenders.collect(), |image| {
+            compare(&reference, image).expect("pictures of one size").named().to_vec()
+        });
+        let reference_rays = counts.total();
+        Self {
+            name,
+            size,
+            reference,
+            reference_rays,
+            rougher,
+            study,
+            pictures,
+            level,
+            alike,
+            scene,
+        }
+    }
+
+    /// Rays per pixel at which a rule comes down to the scene's error; infinite if it never does.
+    fn rays(&self, rule: &str) -> f64 {
+        let rays = self.study.work_at_error(rule, "RMSE", self.level);
+        rays.unwrap_or(f64::INFINITY) / self.size.pixels() as f64
+    }
+
+    /// The picture by a rule at its limit of `alike`.
+    fn picture(&self, rule: usize) -> &Image {
+        let before: usize = RULES[..rule].iter().map(|rule| rule.limits.len()).sum();
+        let place = RULES[rule].limits.iter().position(|known| *known == self.alike[rule]);
+        &self.pictures[before + place.expect("a limit that was tried")]
+    }
+
+    /// What part of the reference's light a picture has too much.
+    fn bias(&self, image: &Image) -> f64 {
+        mean(image) / mean(&self.reference) - 1.0
+    }
+}
+
+fn mean(image: &Image) -> f64 {
+    let channels = image.pixels().as_flattened();
+    channels.iter().copied().map(f64::from).sum::<f64>() / channels.len() as f64
+}
+
+/// The mean of many pictures by roulette.
+struct Average {
+    /// RMSE of the mean of the first 1, 2, 4, … pictures.
+    errors: Vec<(f64, f64)>,
+    /// What part of the reference's light they have too much on average, and its standard error.
+    bias: f64,
+    standard_error: f64,
+}
+
+impl Average {
+    fn new(trial: &Trial) -> Self {
+        let mut sum = vec![[0.0_f64; 3]; trial.size.pixels()];
+        let (mut errors, mut biases) = (Vec::new(), Vec::new());
+        for seed in 0..SEEDS {
+            let image =
+                whitted_picture(&trial.scene, roulette(trial.alike[2], seed), trial.size).image;
+            biases.push(trial.bias(&image));
+            for (sum, pixel) in sum.iter_mut().zip(image.pixels()) {
+                *sum = std::array::from_fn(|c| sum[c] + f64::from(pixel[c]));
+            }
+            let count = (seed + 1) as f64;
+            if (seed + 1).is_power_of_two() {
+                let pixels = sum.iter().map(|sum| sum.map(|c| (c / count) as f32)).collect();
+                let mean = Image::from_pixels(trial.size, pixels);
+                let error = rmse(&trial.reference, &mean).expect("pictures of one size");
+                errors.push((count, error));
+            }
+        }
+        let count = SEEDS as f64;
+        let bias = biases.iter().sum::<f64>() / count;
+        let variance = biases.iter().map(|b| (b - bias).powi(2)).sum::<f64>() / (count - 1.0);
+        Self { errors, bias, standard_error: (variance / count).sqrt() }
+    }
+
+    fn z(&self) -> f64 {
+        self.bias / self.standard_error
+    }
+}
+
+pub fn make(effort: Effort) -> Finished {
+    let size = effort.pick(ImageSize::new(32, 32), ImageSize::new(120, 120));
+    let trials = [
+        Trial::new("whitted", scenes::whitted(), size, 0.01, [2.0, 0.1, 0.1]),
+        Trial::new("27 glass balls", glass_balls(), size, 0.03, [4.0, 0.05, 0.1]),
+    ];
+    let averages = trials.each_ref().map(Average::new);
+    let [whitted, glass] = &trials;
+    let biases = |trial: &Trial| [0, 1].map(|rule| trial.bias(trial.picture(rule)));
+    let holds = trials.iter().zip(&averages).all(|(trial, average)| {
+        let cheaper = trial.rays("weight") < trial.rays("depth");
+        let darker = biases(trial).iter().all(|bias| *bias < -Z * average.standard_error);
+        cheaper && darker && average.z().abs() < Z
+    });
+    let [by_depth, by_weight] = biases(glass).map(|bias| number(-100.0 * bias));
+    let claim = format!(
+        "For an RMSE of {} among glass balls the weight asks for {:.1} rays per pixel and the depth for {:.1}, for \
+         {} in Whitted's scene for {:.2} and {:.2}; depth {} and weight {} lose {by_depth} and {by_weight} % of the \
+         light, roulette on average none (z = {} and {}).",
+        glass.level,
+        glass.rays("weight"),
+        glass.rays("depth"),
+        whitted.level,
+        whitted.rays("weight"),
+        whitted.rays("depth"),
+        glass.alike[0],
+        glass.alike[1],
+        decimals(averages[1].z(), 1),
+        decimals(averages[0].z(), 1),
+    );
+
+    let pixels = size.pixels() as f64;
+    let [glass_average, whitted_average] = [&averages[1], &averages[0]];
+    let [pictures, maps] = montages(glass);
+    let mut plate =
+        Plate::new("1.8", "When to stop following a ray", claim, holds).panel(pictures).panel(maps);
+    for trial in [glass, whitted] {
+        plate = plate.panel(trial.study.chart("RMSE").subject(trial.name));
+    }
+    plate = plate.panel(Row::new().panel(1.0, averaged(glass, glass_average)));
+    for trial in [glass, whitted] {
+        let at = trial.study.at_equal_error("RMSE", trial.level, pixels, "rays per pixel");
+        plate = plate.note(format!("Equal error, {}", trial.name), at);
+    }
+    let residual = |trial: &Trial| {
+        let error = rmse(&trial.reference, &trial.rougher).expect("pictures of one size");
+        let light = trial.bias(&trial.rougher).abs();
+        format!("an RMSE of {} and {} % of its light", number(error), number(100.0 * light))
+    };
+    let plate = plate
+        .note("Method", "algo:lr. Depth: black beyond Max_Prof. Weight: black where the product of k_s and k_t from \
+             the eye is below the limit m. Roulette: such a ray of weight w is traced with probability w / m \
+             and its answer divided by it. Work counts all rays, shadow rays included")
+        .note("Roulette's mean", format!(
+            "{SEEDS} pictures at {}; |z| above {Z} would be a false alarm once in a million (Student's t of \
+             the pictures' light). Standard errors of the light: {} and, in Whitted's scene, {} %",
+            glass.alike[2],
+            number(100.0 * glass_average.standard_error),
+            number(100.0 * whitted_average.standard_error)
+        ))
+        .note("Limits", "the weight wins where k_s and k_t differ: between mirrors of one k_s both rules stop the \
+             same rays. One picture by roulette is noisier than the weight's at equal rays, until little is \
+             left to cut")
+        .note("Settings", format!("glass and floor of scene whitted, {size}, 1 sample per pixel"))
+        .note("Reference", format!(
+            "algo:lr to a weight of {}; ten times that changes it by {} (glass balls) and {}",
+            number(NEGLIGIBLE), residual(glass), residual(whitted)
+        ));
+    Finished { plate, data: table(&trials, &averages) }
+}
+
+/// The pictures with about as many rays, and their errors.
+fn montages(trial: &Trial) -> [Montage; 2] {
+    let per_pixel = |rays: u64| rays as f64 / trial.size.pixels() as f64;
+    let whole = Tile::new("the whole tree", shown(&trial.reference))
+        .subtitle(format!("{:.0} rays/pixel", per_pixel(trial.reference_rays)))
+        .color(method_color("reference"));
+    let scale = HeatScale::log("|error|", 1e-3, 1.0);
+    let (mut pictures, mut maps) = (Montage::new().tile(whole), Montage::new().color_bar(&scale));
+    for (k, rule) in RULES.iter().enumerate() {
+        let (image, knob) = (trial.picture(k), trial.alike[k].to_string());
+        let rays = per_pixel(trial.study.work(rule.name, &knob));
+        let error = trial.study.error(rule.name, &knob, "RMSE");
+        pictures = pictures.tile(
+            Tile::new(format!("{} {knob}", rule.name), shown(image))
+                .subtitle(format!("{rays:.1} rays/pixel, RMSE {error:.3}"))
+                .color((rule.color)()),
+        );
+        let errors = absolute_error_map(&trial.reference, image).expect("pictures of one size");
+        let map = scale.paint(trial.size.width, trial.size.height, &errors);
+        let light = decimals(100.0 * trial.bias(image), 2);
+        maps = maps.tile(
+            Tile::new(format!("error of {} {knob}", rule.name), map)
+                .subtitle(format!("light {light} %"))
+                .color((rule.color)()),
+        );
+    }
+    [pictures, maps]
+}
+
+/// The error of a mean of pictures: only roulette's falls.
+fn averaged(trial: &Trial, average: &Average) -> Chart {
+    let mut chart = Chart::new(Axis::log("pictures averaged"), Axis::log("RMSE of their mean"))
+        .title(format!("{}: the mean of several pictures", trial.name))
+        .height(440.0)
+        .slope(-0.5, "slope −1/2");
+    for (k, rule) in RULES.iter().enumerate() {
+        let knob = trial.alike[k].to_string();
+        let series = Series::new(format!("{} {knob}", rule.name), (rule.color)());
+        let same = trial.study.error(rule.name, &knob, "RMSE");
+        let errors = average.errors.iter().copied();
+        chart = chart.series(match rule.name {
+            "roulette" => series.points(errors),
+            _ => series.points(errors.map(|(count, _)| (count, same))).curve(),
+        });
+    }
+    chart
+}
+
+/// The measurements of both scenes, with the part of light that each picture has too much and the z of
+/// roulette's mean.
+fn table(trials: &[Trial], averages: &[Average]) -> Table {
+    let columns = trials[0].study.table().columns().to_vec();
+    let columns = columns.iter().map(String::as_str);
+    let mut table = Table::new(["scene"].into_iter().chain(columns).chain(["bias", "z"]));
+    for (trial, average) in trials.iter().zip(averages) {
+        for (row, image) in trial.study.table().rows().iter().zip(&trial.pictures) {
+            let ours: [Value; 2] = [trial.bias(image).into(), average.z().into()];
+            table.push([trial.name.into()].into_iter().chain(row.iter().cloned()).chain(ours));
+        }
+    }
+    table
+}

@@ -1,0 +1,333 @@
+//! 1.13: what part of a picture's time the intersections take, by the number of primitives and by index.
+
+use lancer_accel::ObvhsBvh2;
+use lancer_core::geometry::{Interval, Ray};
+use lancer_core::image::ImageSize;
+use lancer_core::intersector::{Hit, Intersector, LinearScan, TestCounts};
+use lancer_core::scene::Scene;
+use lancer_core::world::World;
+use lancer_figure::{
+    Axis, BarChart, Chart, Contender, Effort, Finished, Plate, Row, Series, Study, Table,
+    category_color, method_color,
+};
+use lancer_whitted::{Call, Recorder, Settings, Whitted};
+
+use super::fitted_exponent;
+use crate::scenes;
+
+/// Brute force is not asked for more primitives.
+const MOST_LINEAR: usize = 1100;
+
+/// Everything that a picture asks its index, in order.
+#[derive(Default)]
+struct Queries(Vec<Query>);
+
+struct Query {
+    ray: Ray,
+    range: Interval,
+    /// Whether any hit will do: a shadow ray.
+    any: bool,
+}
+
+impl Recorder for Queries {
+    fn enter(&mut self, call: &Call) {
+        self.0.push(Query { ray: call.ray, range: Interval::POSITIVE, any: false });
+    }
+
+    fn shadow(&mut self, ray: &Ray, _visible: bool) {
+        self.0.push(Query { ray: *ray, range: Interval::up_to(1.0), any: true });
+    }
+}
+
+enum Index<'s> {
+    Linear(LinearScan<'s>),
+    Tree(ObvhsBvh2<'s>),
+}
+
+/// Their names as methods.
+const INDEXES: [&str; 2] = ["linear", "obvhs-bvh2"];
+/// The scenes with a level of detail.
+const FAMILIES: [&str; 2] = ["flake", "tetrahedra"];
+
+impl Index<'_> {
+    fn intersector(&self) -> &dyn Intersector {
+        match self {
+            Self::Linear(index) => index,
+            Self::Tree(index) => index,
+        }
+    }
+
+    fn count(&self, query: &Query, counts: &mut TestCounts) -> Option<Hit> {
+        let Query { ray, range, any } = query;
+        match self {
+            Self::Linear(index) => index.walk(ray, *range, counts, |_| *any),
+            Self::Tree(index) => index.walk(ray, *range, counts, |_| *any),
+        }
+    }
+}
+
+/// A scene at one level of detail with one index.
+struct Case<'s> {
+    scene_name: &'static str,
+    scene: &'s Scene,
+    index_name: &'static str,
+    index: Index<'s>,
+    size: ImageSize,
+    queries: Vec<Query>,
+    counts: TestCounts,
+}
+
+impl<'s> Case<'s> {
+    fn new(
+        scene_name: &'static str,
+        scene: &'s Scene,
+        index_name: &'static str,
+        size: ImageSize,
+    ) -> Self {
+        let index = match index_name {
+            "linear" => Index::Linear(LinearScan::new(scene)),
+            _ => Index::Tree(ObvhsBvh2::build(scene)),
+        };
+        let mut queries = Queries::default();
+        picture(scene, &index, size, &mut queries);
+        let (queries, mut counts) = (queries.0, TestCounts::default());
+        for query in &queries {
+            index.count(query, &mut counts);
+        }
+        Self { scene_name, scene, index_name, index, size, queries, counts }
+    }
+
+    fn label(&self) -> String {
+        format!("{} {}", self.scene_name, self.index_name)
+    }
+
+    fn primitives(&self) -> usize {
+        self.scene.primitives().len()
+    }
+
+    fn rays_per_pixel(&self) -> f64 {
+        self.queries.len() as f64 / self.size.pixels() as f64
+    }
+
+    /// Primitives, and tests of boxes and primitives per ray.
+    fn work(&self) -> (f64, f64) {
+        let tests = (self.counts.boxes + self.counts.primitives) as f64;
+        (self.primitives() as f64, tests / self.queries.len() as f64)
+    }
+
+    /// Only the queries. Returns the number of hits.
+    fn replay(&self) -> f64 {
+        let index = self.index.intersector();
+        let hits = self.queries.iter().filter(|query| match query.any {
+            false => index.closest_hit(&query.ray, query.range).is_some(),
+            true => index.occluded(&query.ray, query.range),
+        });
+        hits.count() as f64
+    }
+}
+
+/// A picture by one thread: the sum of its pixels.
+fn picture<R: Recorder>(scene: &Scene, index: &Index, size: ImageSize, recorder: &mut R) -> f64 {
+    let method = Whitted::new(World { scene, index: index.intersector() }, Settings::default());
+    let rays = scene.camera.primary_rays(size);
+    let pixels = (0..size.height).flat_map(|y| (0..size.width).map(move |x| (x, y)));
+    pixels
+        .map(|(x, y)| {
+            let ray = rays.through(f64::from(x) + 0.5, f64::from(y) + 0.5);
+            method.trace(&ray, recorder).element_sum()
+        })
+        .sum()
+}
+
+pub fn make(effort: Effort) -> Finished {
+    // Brute force gets a smaller picture: the longer a run, the less often it stays undisturbed.
+    let size = |index: &str| match index {
+        "linear" => ImageSize::new(24, 24),
+        _ => effort.pick(ImageSize::new(24, 24), ImageSize::new(96, 96)),
+    };
+    let runs = effort.pick(2, 25);
+    let levels = effort.pick([3, 5], [5, 8]);
+    let generated = |name: &'static str, levels: u32| {
+        (1..=levels).map(move |level| {
+            let opened = scenes::open(name, Some(&level.to_string()));
+            (name, opened.expect("a level that the scene has").scene)
+        })
+    };
+    let scenes: Vec<(&str, Scene)> = [("whitted", scenes::whitted())]
+        .into_iter()
+        .chain(generated(FAMILIES[0], levels[0]))
+        .chain(generated(FAMILIES[1], levels[1]))
+        .collect();
+    let cases: Vec<Case> = scenes
+        .iter()
+        .flat_map(|(name, scene)| INDEXES.map(|index| (*name, scene, index)))
+        .filter(|(_, scene, index)| *index != "linear" || scene.primitives().len() <= MOST_LINEAR)
+        .map(|(name, scene, index)| Case::new(name, scene, index, size(index)))
+        .collect();
+
+    // All pictures, then all queries: what ran before has emptied the caches for both alike.
+    let contenders = ["whole", "queries"].into_iter().flat_map(|part| {
+        cases.iter().map(move |case| Contender {
+            label: format!("{} {part}", case.label()),
+            color: method_color(case.index_name),
+            knob: case.primitives().to_string(),
+            run: Box::new(move || {
+                let outcome = match part {
+                    "whole" => picture(case.scene, &case.index, case.size, &mut ()),
+                    _ => case.replay(),
+                };
+                (outcome, case.queries.len() as u64)
+            }),
+        })
+    });
+    let (study, _) = Study::measure("rays", runs, contenders.collect(), |_| Vec::new());
+    let share = |case: &Case| {
+        let [queries, whole] = ["queries", "whole"].map(|part| seconds(&study, case, part));
+        100.0 * queries / whole
+    };
+
+    let exponents = INDEXES.map(|index| {
+        FAMILIES.map(|family| {
+            let points: Vec<_> = of(&cases, family, index).map(Case::work).collect();
+            fitted_exponent(&points)
+        })
+    });
+    let [linear, tree] = exponents;
+    let holds = linear.iter().all(|p| (0.9..1.1).contains(p)) && tree.iter().all(|p| *p < 0.3);
+    let shares = |index: &str| {
+        span(&mut cases.iter().filter(|case| case.index_name == index).map(&share), 0)
+    };
+    let claim = format!(
+        "With n primitives a ray costs brute force n^{:.2} tests, the hierarchy n^{:.2} (flake) and n^{:.2} \
+         (tetrahedra); intersections take {} % of the time by brute force and {} % with the hierarchy, where \
+         Whitted measured 75 to 95 % in 1980.",
+        linear[0],
+        tree[0],
+        tree[1],
+        shares(INDEXES[0]),
+        shares(INDEXES[1]),
+    );
+
+    let bars = |index: &str, title: &str| {
+        let cases: Vec<&Case> = cases.iter().filter(|case| case.index_name == index).collect();
+        let names = cases.iter().map(|case| format!("{}, {}", case.scene_name, case.primitives()));
+        let shares: Vec<f64> = cases.iter().map(|case| share(case)).collect();
+        // A share measured above 100 % is printed as measured and leaves nothing to draw.
+        let rest: Vec<f64> = shares.iter().map(|share| (100.0 - share).max(0.0)).collect();
+        let rounded: Vec<f64> = shares.iter().map(|share| (10.0 * share).round() / 10.0).collect();
+        BarChart::new("part of the time (%)", names)
+            .title(title)
+            .stacked()
+            .first_printed()
+            .series("intersections", category_color(0), rounded)
+            .series("the rest", category_color(1), rest)
+    };
+    let mut tests = Chart::new(Axis::log("primitives, n"), Axis::log("tests per ray"))
+        .title("Counted work")
+        .slope(1.0, "slope 1");
+    let mut times = Chart::new(Axis::log("primitives, n"), Axis::log("nanoseconds per ray"))
+        .title("Time (one thread)")
+        .slope(1.0, "slope 1");
+    for (index, name) in INDEXES.into_iter().zip(["brute force", "hierarchy"]) {
+        for family in FAMILIES {
+            let cases: Vec<&Case> = of(&cases, family, index).collect();
+            let styled = |label: String, color| {
+                let series = Series::new(label, color);
+                if family == FAMILIES[0] { series } else { series.dashed() }
+            };
+            let points = cases.iter().map(|case| case.work());
+            tests = tests
+                .series(styled(format!("{name}, {family}"), method_color(index)).points(points));
+            let per_ray = |case: &Case, seconds: f64| {
+                (case.primitives() as f64, 1e9 * seconds / case.queries.len() as f64)
+            };
+            let queries = cases.iter().map(|case| per_ray(case, seconds(&study, case, "queries")));
+            times = times
+                .series(styled(format!("{name}, {family}"), method_color(index)).points(queries));
+            if index == INDEXES[1] {
+                let rest = cases.iter().map(|case| {
+                    let rest = seconds(&study, case, "whole") - seconds(&study, case, "queries");
+                    per_ray(case, rest)
+                });
+                let label = format!("the rest, {family}");
+                times = times.series(styled(label, category_color(1)).points(rest));
+            }
+        }
+    }
+
+    let mut data = Table::new([
+        "scene",
+        "primitives",
+        "index",
+        "rays",
+        "rays_per_pixel",
+        "box_tests",
+        "primitive_tests",
+        "seconds_whole",
+        "seconds_queries",
+        "share_percent",
+    ]);
+    for case in &cases {
+        data.push([
+            case.scene_name.into(),
+            case.primitives().into(),
+            case.index_name.into(),
+            case.queries.len().into(),
+            case.rays_per_pixel().into(),
+            case.counts.boxes.into(),
+            case.counts.primitives.into(),
+            seconds(&study, case, "whole").into(),
+            seconds(&study, case, "queries").into(),
+            share(case).into(),
+        ]);
+    }
+    let plate = Plate::new("1.13", "Where the time goes", claim, holds)
+        .panel(
+            Row::new()
+                .panel(1.0, bars(INDEXES[0], "Brute force"))
+                .panel(1.0, bars(INDEXES[1], "Hierarchy (obvhs-bvh2)")),
+        )
+        .panel(Row::new().panel(1.0, tests).panel(1.0, times))
+        .note("« Temps de calcul important »", format!(
+            "intersections and number of rays: {} rays per pixel. The exponents are fitted to the tests of \
+             primitives and boxes by all rays of a picture",
+            span(&mut cases.iter().map(Case::rays_per_pixel), 1)
+        ))
+        .note("Method", format!(
+            "algo:lr to depth 5, with shadow rays. All rays of a picture are recorded; then all pictures and, \
+             after them, the bare queries of their rays are timed, {runs} times in turn, and the share is that \
+             of the least times"
+        ))
+        .note("Limits", "an estimate of this code on this machine: the bare queries read their rays from memory, \
+             and no shading comes between them. Pictures and queries start with equally cold caches, so that \
+             the nanoseconds grow faster than the tests where the scene must be fetched. Building the index \
+             is not counted")
+        .note("Settings", format!(
+            "{} (brute force, up to {MOST_LINEAR} primitives) and {}, 1 sample per pixel",
+            size("linear"), size("obvhs-bvh2")
+        ))
+        .note("Reference", "closed form for brute force: a ray tests all n primitives, a shadow ray that is \
+             stopped at least one");
+    Finished { plate, data }
+}
+
+/// The least time of a case's runs: what disturbs a run only makes it longer.
+fn seconds(study: &Study, case: &Case, part: &str) -> f64 {
+    study.seconds(&format!("{} {part}", case.label()), &case.primitives().to_string()).low
+}
+
+/// From the least to the greatest.
+fn span(values: &mut dyn Iterator<Item = f64>, places: usize) -> String {
+    let (low, high) = values
+        .fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
+    format!("{low:.places$} to {high:.places$}")
+}
+
+/// The cases of one scene and one index.
+fn of<'c, 's>(
+    cases: &'c [Case<'s>],
+    family: &'c str,
+    index: &'c str,
+) -> impl Iterator<Item = &'c Case<'s>> {
+    cases.iter().filter(move |case| case.scene_name == family && case.index_name == index)
+}
