@@ -69,6 +69,34 @@ fn watertight() {
     }
 }
 
+/// 1.1, algo:appel and eq:ray-triangle: rays err nowhere; of a cycle of three bars an order gets one
+/// crossing wrong or two, and of two sheets that pass through each other half of what they share.
+#[test]
+fn visible() {
+    let rows = rows(&made("1.1"));
+    for row in &rows {
+        let wrong = value(row, "wrong_pixels_percent");
+        assert_eq!(field(row, "method").starts_with("rays"), wrong == 0.0, "{row:?}");
+    }
+    // A crossing of two strips is a parallelogram: the product of their widths over the sine between them.
+    let percent_of_picture = 100.0 / 8.0;
+    let crossing = 0.34 * 0.34 / (std::f64::consts::TAU / 6.0).sin() * percent_of_picture;
+    let sheets = 0.5 * 0.72 * 0.72 / 1.4_f64.sin() * percent_of_picture;
+    let with_crossings = |count: f64| {
+        let orders = rows.iter().filter(|row| field(row, "method") == "an order");
+        let near = |wrong: f64| (wrong - count * crossing - sheets).abs() < 0.3;
+        orders.filter(|row| near(value(row, "wrong_pixels_percent"))).count()
+    };
+    assert_eq!((with_crossings(1.0), with_crossings(2.0)), (60, 60));
+    // The painter looks only where its polygons are.
+    let tests = |method: &str| -> Vec<f64> {
+        let rows = rows.iter().filter(|row| field(row, "method") == method);
+        rows.map(|row| value(row, "tests")).collect()
+    };
+    let (painter, tree) = (tests("painter: centroid"), tests("rays: tree"));
+    assert!(painter.iter().zip(&tree).all(|(painter, tree)| painter < tree));
+}
+
 /// 1.2, eq:local and eq:ambient: every term has its sign, and shadows take no more than the lights gave.
 #[test]
 fn local_model() {

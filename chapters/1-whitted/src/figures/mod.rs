@@ -6,6 +6,7 @@ mod descartes;
 mod local_model;
 mod quadratic;
 mod ray_tree;
+mod visible;
 mod watertight;
 
 use std::ops::AddAssign;
@@ -26,6 +27,7 @@ use lancer_whitted::{RayCounts, Recorder, Settings, Whitted};
 pub const FIGURES: &[Figure] = &[
     Figure { id: "0.1", name: "quadratic", make: quadratic::make },
     Figure { id: "0.3", name: "watertight", make: watertight::make },
+    Figure { id: "1.1", name: "visible", make: visible::make },
     Figure { id: "1.2", name: "local-model", make: local_model::make },
     Figure { id: "1.5", name: "descartes", make: descartes::make },
     Figure { id: "1.6", name: "ray-tree", make: ray_tree::make },
