@@ -175,3 +175,32 @@ fn aliasing() {
         }
     }
 }
+
+/// 1.12, eq:ray-sphere and algo:lr: a frame with one sample per pixel shows nothing or a whole pixel, so that
+/// its errors are those of a coin of p = π d² / 4. 64 samples miss no sphere of half a pixel in any layout:
+/// each has a sample in every cell of 1/8, and the disc holds the cell that its centre lies in.
+#[test]
+fn vanishing() {
+    let rows = rows(&made("1.12"));
+    let of = |method: &str, knob: &str, column: &str| {
+        let row =
+            rows.iter().find(|row| field(row, "method") == method && field(row, "knob") == knob);
+        value(row.expect("a row"), column)
+    };
+    let error = "relative RMS error of the area";
+    let p = std::f64::consts::PI / 16.0;
+    // Of 15² frames the disc, 7.5 of their steps wide, holds 225 p = 44 up to π (√2 · 3.75 + ½) = 18.
+    let seen = 225.0 * (1.0 - of("regular", "1", "gone (%)") / 100.0);
+    assert!((seen - 225.0 * p).abs() < 18.0, "{seen}");
+    let coin = (seen / 225.0 * (1.0 / p - 1.0).powi(2) + 1.0 - seen / 225.0).sqrt();
+    assert!((of("regular", "1", error) - coin).abs() < 1e-9);
+    for method in ["regular", "jittered", "Owen"] {
+        assert_eq!(of(method, "64", "gone (%)"), 0.0);
+        for [fewer, more] in [["1", "4"], ["4", "16"], ["16", "64"]] {
+            assert!(of(method, more, error) < of(method, fewer, error), "{method} {more}");
+        }
+    }
+    // The discs around the samples of a grid of 2 by 2 touch: four times as many, up to π (√2 · 7.5 + ½) = 34.
+    let seen = 225.0 * (1.0 - of("regular", "4", "gone (%)") / 100.0);
+    assert!((seen - 4.0 * 225.0 * p).abs() < 34.0, "{seen}");
+}

@@ -6,6 +6,7 @@ mod descartes;
 mod local_model;
 mod quadratic;
 mod ray_tree;
+mod vanishing;
 mod visible;
 mod watertight;
 
@@ -33,6 +34,7 @@ pub const FIGURES: &[Figure] = &[
     Figure { id: "1.6", name: "ray-tree", make: ray_tree::make },
     Figure { id: "1.7", name: "depth", make: depth::make },
     Figure { id: "1.11", name: "aliasing", make: aliasing::make },
+    Figure { id: "1.12", name: "vanishing", make: vanishing::make },
 ];
 
 /// The picture as a display shows it.
