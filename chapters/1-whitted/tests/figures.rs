@@ -204,3 +204,30 @@ fn vanishing() {
     let seen = 225.0 * (1.0 - of("regular", "4", "gone (%)") / 100.0);
     assert!((seen - 4.0 * 225.0 * p).abs() < 34.0, "{seen}");
 }
+
+/// 1.14, algo:lr, eq:ambient and eq:local: from where the camera stood all is known, and less the farther it
+/// moves; diffuse light does not depend on the eye; every pixel's ray is traced all the same.
+#[test]
+fn image_space() {
+    let rows = rows(&made("1.14"));
+    let (width, pixels) = (64.0, 64.0 * 48.0);
+    for motion in ["to the side", "turned"] {
+        let rows: Vec<_> = rows.iter().filter(|row| field(row, "motion") == motion).collect();
+        assert_eq!(value(rows[0], "same_light"), pixels);
+        assert_eq!(value(rows[0], "shadow_rays_same"), value(rows[0], "shadow_rays"));
+        for row in &rows {
+            // The room is closed: each primary ray meets it, and each mirror ray again.
+            assert_eq!(value(row, "points"), pixels);
+            assert_eq!(value(row, "same_light"), value(row, "seen"));
+            let first_rays = pixels + value(row, "shadow_rays") + value(row, "mirror_rays");
+            assert!(value(row, "rays") >= first_rays, "{row:?}");
+        }
+        for pair in rows.windows(2) {
+            assert!(value(pair[1], "seen") < value(pair[0], "seen"));
+        }
+        // At least a column comes into the picture for each pixel of the step.
+        for row in &rows[1..] {
+            assert!(value(row, "seen") <= pixels * (1.0 - value(row, "pixels") / width), "{row:?}");
+        }
+    }
+}

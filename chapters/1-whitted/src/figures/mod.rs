@@ -3,6 +3,7 @@
 mod aliasing;
 mod depth;
 mod descartes;
+mod image_space;
 mod local_model;
 mod quadratic;
 mod ray_tree;
@@ -35,6 +36,7 @@ pub const FIGURES: &[Figure] = &[
     Figure { id: "1.7", name: "depth", make: depth::make },
     Figure { id: "1.11", name: "aliasing", make: aliasing::make },
     Figure { id: "1.12", name: "vanishing", make: vanishing::make },
+    Figure { id: "1.14", name: "image-space", make: image_space::make },
 ];
 
 /// The picture as a display shows it.

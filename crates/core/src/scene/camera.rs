@@ -1,4 +1,4 @@
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::geometry::Ray;
 use crate::image::ImageSize;
@@ -52,5 +52,41 @@ impl PrimaryRays {
     #[inline]
     pub fn through(&self, x: f64, y: f64) -> Ray {
         Ray::new(self.eye, (self.corner + x * self.across + y * self.down).normalize())
+    }
+
+    /// The film point, in pixels, at which the picture shows `point`, or `None` if that is not before the
+    /// eye: the ray [`PrimaryRays::through`] it points there. It may lie beside the picture.
+    pub fn film_point(&self, point: DVec3) -> Option<DVec2> {
+        let forward = self.across.cross(self.down).normalize();
+        let to_point = point - self.eye;
+        let depth = to_point.dot(forward);
+        (depth > 0.0).then(|| {
+            let on_film = to_point / depth - self.corner;
+            let along = |side: DVec3| on_film.dot(side) / side.length_squared();
+            DVec2::new(along(self.across), along(self.down))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_is_shown_where_its_ray_passes() {
+        // By hand: the picture's half height is 1 at distance 1, a pixel too.
+        let camera = Camera { eye: DVec3::ZERO, look_at: DVec3::NEG_Z, up: DVec3::Y, fov: 90.0 };
+        let rays = camera.primary_rays(ImageSize::new(4, 2));
+        let film = rays.film_point(DVec3::new(1.5, 1.5, -3.0)).unwrap();
+        assert!((film - DVec2::new(2.5, 0.5)).length() < 1e-14, "{film}");
+        assert_eq!(rays.film_point(DVec3::Z), None);
+
+        let eye = DVec3::new(0.3, 1.7, 4.9);
+        let camera = Camera { eye, look_at: DVec3::new(-0.1, 1.2, 0.0), fov: 60.0, ..camera };
+        let rays = camera.primary_rays(ImageSize::new(320, 240));
+        for (x, y) in [(0.0, 0.0), (17.25, 239.5), (-40.0, 300.0)] {
+            let film = rays.film_point(rays.through(x, y).at(7.0)).unwrap();
+            assert!((film - DVec2::new(x, y)).length() < 1e-10, "{film}");
+        }
     }
 }
