@@ -217,7 +217,7 @@ fn image_space() {
         assert_eq!(value(rows[0], "shadow_rays_same"), value(rows[0], "shadow_rays"));
         for row in &rows {
             // The room is closed: each primary ray meets it, and each mirror ray again.
-            assert_eq!(value(row, "points"), pixels);
+            assert_eq!((value(row, "points"), value(row, "primary_rays")), (pixels, pixels));
             assert_eq!(value(row, "same_light"), value(row, "seen"));
             let first_rays = pixels + value(row, "shadow_rays") + value(row, "mirror_rays");
             assert!(value(row, "rays") >= first_rays, "{row:?}");

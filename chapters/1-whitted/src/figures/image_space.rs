@@ -143,17 +143,20 @@ pub fn make(effort: Effort) -> Finished {
         "shadow_rays",
         "shadow_rays_same",
         "rays",
+        "primary_rays",
         "mirror_rays",
     ]);
     let mut shares = Chart::new(
         Axis::log("camera step (pixels)"),
-        Axis::linear("surface points of the next frame (%)").between(0.0, 100.0),
+        Axis::linear("points of the next frame (%)").between(0.0, 100.0),
     )
     .title("Known from the frame before")
     .height(420.0);
     let steps: &[f64] = effort.pick(&STEPS[..5], &STEPS);
     let mut at_one = None;
     let mut marks = Vec::new();
+    // The share of the visible points that took no ray of their own.
+    let mut untraced = Vec::new();
     let mut falls = true;
     for (k, (name, motion)) in MOTIONS.iter().enumerate() {
         let mut series = Series::new(*name, category_color([2, 1][k]));
@@ -175,10 +178,15 @@ pub fn make(effort: Effort) -> Finished {
                 shadows[0].into(),
                 shadows[1].into(),
                 second.counts.total().into(),
+                second.counts.primary.into(),
                 second.counts.mirror.into(),
             ]);
             if k == 0 && (pixels == 1.0 || pixels == 8.0) {
                 marks.push((pixels, share, seen.image.clone()));
+            }
+            if k == 0 {
+                let traced = second.counts.primary as f64 / points as f64;
+                untraced.push((pixels, 100.0 * (1.0 - traced)));
             }
             if k == 0 && pixels == 1.0 {
                 at_one = Some((second, seen.counts));
@@ -186,16 +194,15 @@ pub fn make(effort: Effort) -> Finished {
         }
         shares = shares.series(series);
     }
-    let nothing = steps.iter().map(|&pixels| (pixels, 0.0));
-    shares =
-        shares.series(Series::new("reused by algo:lr", method_color("whitted")).points(nothing));
+    let reused = Series::new("reused by algo:lr", method_color("whitted")).points(untraced.clone());
+    shares = shares.series(reused);
     let (second, Known { points, seen, same, shadows, stored_error }) =
         at_one.expect("one pixel is among the steps");
     let share = same as f64 / points as f64;
     let again = frame(scene.camera, size);
 
-    let sizes = effort.pick(16, 40);
-    let sizes = [1, 2, 4, 8].map(|k| ImageSize::new(sizes * k, sizes * k * 3 / 4));
+    let side = effort.pick(16, 40);
+    let sizes = [1, 2, 4, 8].map(|k| ImageSize::new(side * k, side * k * 3 / 4));
     let growth =
         sizes.map(|size| (size.pixels() as f64, frame(scene.camera, size).counts.total() as f64));
     let slope = (growth[3].1 / growth[0].1).ln() / (growth[3].0 / growth[0].0).ln();
@@ -206,17 +213,17 @@ pub fn make(effort: Effort) -> Finished {
         .height(420.0);
 
     let holds = again == first
+        && untraced.iter().all(|(_, share)| *share == 0.0)
         && falls
         && same as f64 >= 0.999 * seen as f64
         && share > 0.9
         && (slope - 1.0).abs() < 0.02;
     let rays = second.counts;
-    let first_known = same + shadows[1];
     let claim = format!(
-        "After a step of one pixel the last frame has computed the diffuse light and the shadows of {:.1} % of the \
-         points now seen, the answers of {:.0} % of the rays; algo:lr keeps none and traces all {} again.",
+        "After a step of one pixel the last frame has computed the diffuse light of {:.1} % of the points now \
+         seen, with {:.1} % of their shadow rays; algo:lr keeps none of it and traces all {} rays again.",
         100.0 * share,
-        100.0 * first_known as f64 / rays.total() as f64,
+        100.0 * shadows[1] as f64 / shadows[0] as f64,
         rays.total()
     );
 
@@ -249,9 +256,10 @@ pub fn make(effort: Effort) -> Finished {
              into in the first frame shows its face, nothing hides it from the first eye, and eq:ambient and \
              the diffuse part of eq:local with vis(i) are equal from both eyes, to 10⁻⁹")
         .note("Limits", format!(
-            "what could be kept is a bound: highlights, mirrors and glass depend on the eye, and a pixel \
-             stores its centre, not the point: taken from there the light is off by {} (RMSE). Lights and \
-             objects at rest; here the faces are plane and matte but for the mirror",
+            "what could be kept is a bound. Highlights, mirrors and glass depend on the eye; a point known \
+             before must still be found, by projecting it; and a pixel stores the light of its centre, not of \
+             the point, which is off by {} (RMSE). Lights and objects at rest; plane faces, matte but for the \
+             mirror",
             number((stored_error / (3.0 * same as f64)).sqrt())
         ))
         .note("Settings", format!(
