@@ -150,6 +150,34 @@ fn safety() {
     assert!(wrong("ε = 10⁻⁴") > 0.0);
 }
 
+/// 1.1, algo:appel and eq:ray-triangle: rays err nowhere; of a cycle of three bars an order gets one
+/// crossing wrong or two, and of two sheets that pass through each other half of what they share.
+#[test]
+fn visible() {
+    let rows = rows(&made("1.1"));
+    for row in &rows {
+        let wrong = value(row, "wrong_pixels_percent");
+        assert_eq!(field(row, "method").starts_with("rays"), wrong == 0.0, "{row:?}");
+    }
+    // A crossing of two strips is a parallelogram: the product of their widths over the sine between them.
+    let percent_of_picture = 100.0 / 8.0;
+    let crossing = 0.34 * 0.34 / (std::f64::consts::TAU / 6.0).sin() * percent_of_picture;
+    let sheets = 0.5 * 0.72 * 0.72 / 1.4_f64.sin() * percent_of_picture;
+    let with_crossings = |count: f64| {
+        let orders = rows.iter().filter(|row| field(row, "method") == "an order");
+        let near = |wrong: f64| (wrong - count * crossing - sheets).abs() < 0.3;
+        orders.filter(|row| near(value(row, "wrong_pixels_percent"))).count()
+    };
+    assert_eq!((with_crossings(1.0), with_crossings(2.0)), (60, 60));
+    // The painter looks only where its polygons are.
+    let tests = |method: &str| -> Vec<f64> {
+        let rows = rows.iter().filter(|row| field(row, "method") == method);
+        rows.map(|row| value(row, "tests")).collect()
+    };
+    let (painter, tree) = (tests("painter: centroid"), tests("rays: tree"));
+    assert!(painter.iter().zip(&tree).all(|(painter, tree)| painter < tree));
+}
+
 /// 1.2, eq:local and eq:ambient: every term has its sign, and shadows take no more than the lights gave.
 #[test]
 fn local_model() {
@@ -339,6 +367,35 @@ fn aliasing() {
     }
 }
 
+/// 1.12, eq:ray-sphere and algo:lr: a frame with one sample per pixel shows nothing or a whole pixel, so that
+/// its errors are those of a coin of p = π d² / 4. 64 samples miss no sphere of half a pixel in any layout:
+/// each has a sample in every cell of 1/8, and the disc holds the cell that its centre lies in.
+#[test]
+fn vanishing() {
+    let rows = rows(&made("1.12"));
+    let of = |method: &str, knob: &str, column: &str| {
+        let row =
+            rows.iter().find(|row| field(row, "method") == method && field(row, "knob") == knob);
+        value(row.expect("a row"), column)
+    };
+    let error = "relative RMS error of the area";
+    let p = std::f64::consts::PI / 16.0;
+    // Of 15² frames the disc, 7.5 of their steps wide, holds 225 p = 44 up to π (√2 · 3.75 + ½) = 18.
+    let seen = 225.0 * (1.0 - of("regular", "1", "gone (%)") / 100.0);
+    assert!((seen - 225.0 * p).abs() < 18.0, "{seen}");
+    let coin = (seen / 225.0 * (1.0 / p - 1.0).powi(2) + 1.0 - seen / 225.0).sqrt();
+    assert!((of("regular", "1", error) - coin).abs() < 1e-9);
+    for method in ["regular", "jittered", "Owen"] {
+        assert_eq!(of(method, "64", "gone (%)"), 0.0);
+        for [fewer, more] in [["1", "4"], ["4", "16"], ["16", "64"]] {
+            assert!(of(method, more, error) < of(method, fewer, error), "{method} {more}");
+        }
+    }
+    // The discs around the samples of a grid of 2 by 2 touch: four times as many, up to π (√2 · 7.5 + ½) = 34.
+    let seen = 225.0 * (1.0 - of("regular", "4", "gone (%)") / 100.0);
+    assert!((seen - 4.0 * 225.0 * p).abs() < 34.0, "{seen}");
+}
+
 /// 1.13: both indexes answer the same rays; brute force tests every primitive for a ray that nothing stops,
 /// and the hierarchy far fewer where there are many.
 #[test]
@@ -362,6 +419,33 @@ fn where_time_goes() {
         if n > 500.0 {
             let work = value(tree, "box_tests") + value(tree, "primitive_tests");
             assert!(work < 0.1 * tests, "{tree:?}");
+        }
+    }
+}
+
+/// 1.14, algo:lr, eq:ambient and eq:local: from where the camera stood all is known, and less the farther it
+/// moves; diffuse light does not depend on the eye; every pixel's ray is traced all the same.
+#[test]
+fn image_space() {
+    let rows = rows(&made("1.14"));
+    let (width, pixels) = (64.0, 64.0 * 48.0);
+    for motion in ["to the side", "turned"] {
+        let rows: Vec<_> = rows.iter().filter(|row| field(row, "motion") == motion).collect();
+        assert_eq!(value(rows[0], "same_light"), pixels);
+        assert_eq!(value(rows[0], "shadow_rays_same"), value(rows[0], "shadow_rays"));
+        for row in &rows {
+            // The room is closed: each primary ray meets it, and each mirror ray again.
+            assert_eq!((value(row, "points"), value(row, "primary_rays")), (pixels, pixels));
+            assert_eq!(value(row, "same_light"), value(row, "seen"));
+            let first_rays = pixels + value(row, "shadow_rays") + value(row, "mirror_rays");
+            assert!(value(row, "rays") >= first_rays, "{row:?}");
+        }
+        for pair in rows.windows(2) {
+            assert!(value(pair[1], "seen") < value(pair[0], "seen"));
+        }
+        // At least a column comes into the picture for each pixel of the step.
+        for row in &rows[1..] {
+            assert!(value(row, "seen") <= pixels * (1.0 - value(row, "pixels") / width), "{row:?}");
         }
     }
 }

@@ -191,7 +191,7 @@ impl Scale {
             .filter(|&(m, k)| self.shows(f64::from(m) * power(k)))
             .collect();
         if values.len() < 2 {
-            return linear_ticks(10f64.powf(self.low), 10f64.powf(self.high), most);
+            return self.equal_steps(apart, most);
         }
         let plain = values.iter().all(|(_, k)| (-2..=3).contains(k));
         let label = |m: u32, k: i32| match (plain, m) {
@@ -203,6 +203,19 @@ impl Scale {
             .into_iter()
             .map(|(m, k)| Tick { value: f64::from(m) * power(k), label: label(m, k) })
             .collect()
+    }
+
+    /// The ticks of a log axis of less than a decade: equal steps, so large that even the upper ones, which
+    /// are closest together, have their room.
+    fn equal_steps(&self, apart: f64, mut most: f64) -> Vec<Tick> {
+        loop {
+            let ticks = linear_ticks(10f64.powf(self.low), 10f64.powf(self.high), most);
+            let room = |pair: &[Tick]| (self.at(pair[1].value) - self.at(pair[0].value)).abs();
+            if most <= 1.0 || ticks.windows(2).all(|pair| room(pair) >= apart) {
+                return ticks;
+            }
+            most /= 1.5;
+        }
     }
 
     /// The unlabelled grid lines of a log axis: 2 to 9 in each decade, or the decades when they are many.
@@ -289,6 +302,9 @@ mod tests {
         assert_eq!(labels(&crowded.ticks(60.0)), ["10⁻¹²", "10⁻⁸", "10⁻⁴", "1"]);
         let within = Scale::exactly(true, 3.1, 4.9, 0.0, 240.0);
         assert_eq!(labels(&within.ticks(60.0)), ["3.5", "4.0", "4.5"]);
+        // Of 4, 5, … 9 the first two would stand 57 px apart, but the last two 30.
+        let rising = Scale::exactly(true, 3.7, 9.5, 0.0, 240.0);
+        assert_eq!(labels(&rising.ticks(40.0)), ["4", "6", "8"]);
     }
 
     #[test]

@@ -6,6 +6,7 @@ mod depth;
 mod descartes;
 mod diffuse;
 mod exponent;
+mod image_space;
 mod indirect;
 mod inverse_square;
 mod local_model;
@@ -14,6 +15,8 @@ mod quadratic;
 mod ray_tree;
 mod safety;
 mod slab;
+mod vanishing;
+mod visible;
 mod watertight;
 mod where_time_goes;
 
@@ -38,6 +41,7 @@ pub const FIGURES: &[Figure] = &[
     Figure { id: "0.3", name: "watertight", make: watertight::make },
     Figure { id: "0.4", name: "slab", make: slab::make },
     Figure { id: "0.5", name: "safety", make: safety::make },
+    Figure { id: "1.1", name: "visible", make: visible::make },
     Figure { id: "1.2", name: "local-model", make: local_model::make },
     Figure { id: "1.3", name: "exponent", make: exponent::make },
     Figure { id: "1.4", name: "inverse-square", make: inverse_square::make },
@@ -48,7 +52,9 @@ pub const FIGURES: &[Figure] = &[
     Figure { id: "1.9", name: "indirect", make: indirect::make },
     Figure { id: "1.10", name: "diffuse", make: diffuse::make },
     Figure { id: "1.11", name: "aliasing", make: aliasing::make },
+    Figure { id: "1.12", name: "vanishing", make: vanishing::make },
     Figure { id: "1.13", name: "where-time-goes", make: where_time_goes::make },
+    Figure { id: "1.14", name: "image-space", make: image_space::make },
 ];
 
 /// The picture as a display shows it.

@@ -86,6 +86,13 @@ mod tests {
 
     #[test]
     fn a_point_is_seen_where_its_ray_passes() {
+        // By hand: the picture's half height is 1 at distance 1, a pixel too.
+        let camera = Camera { eye: DVec3::ZERO, look_at: DVec3::NEG_Z, up: DVec3::Y, fov: 90.0 };
+        let rays = camera.primary_rays(ImageSize::new(4, 2));
+        let film = rays.film_point(DVec3::new(1.5, 1.5, -3.0)).unwrap();
+        assert!((film - DVec2::new(2.5, 0.5)).length() < 1e-14, "{film}");
+        assert_eq!(rays.film_point(DVec3::Z), None);
+
         let rays = CAMERA.primary_rays(ImageSize::new(64, 48));
         for (x, y) in [(0.0, 0.0), (0.5, 47.5), (32.0, 24.0), (80.0, -3.0)] {
             let film = rays.film_point(rays.through(x, y).at(7.3)).unwrap();
