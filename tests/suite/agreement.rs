@@ -63,9 +63,27 @@ fn aimed(class: &str, mesh: &Mesh, offset: DVec3, random: &mut Random) -> Ray {
     }
 }
 
+/// An index of a scene.
+type Built<'s> = Box<dyn Intersector + 's>;
+
+/// Every index of chapter 4 but the oracle.
+const INDEXES: [(&str, fn(&Scene) -> Built<'_>); 1] =
+    [("obvhs-bvh2", |scene| Box::new(ObvhsBvh2::build(scene)))];
+
 fn assert_agreement(scene: &Scene, offset: DVec3, rays: usize) {
+    for (name, build) in INDEXES {
+        assert_index_agrees(name, &*build(scene), scene, offset, rays);
+    }
+}
+
+fn assert_index_agrees(
+    name: &str,
+    index: &dyn Intersector,
+    scene: &Scene,
+    offset: DVec3,
+    rays: usize,
+) {
     let oracle = LinearScan::new(scene);
-    let index = ObvhsBvh2::build(scene);
     for class in CLASSES {
         let mut random = Random::new(11);
         let mut hits = 0;
@@ -76,14 +94,18 @@ fn assert_agreement(scene: &Scene, offset: DVec3, rays: usize) {
             let key = |hit: Option<lancer_core::intersector::Hit>| {
                 hit.map(|hit| (hit.t.to_bits(), hit.primitive))
             };
-            assert_eq!(key(got), key(wanted), "{class} at {offset}: {ray:?}");
+            assert_eq!(key(got), key(wanted), "{name}: {class} at {offset}: {ray:?}");
             let Some(hit) = wanted else { continue };
             hits += 1;
             // An interval that ends around the hit: occlusion and closest hit must agree with it.
             for max in [hit.t, hit.t.next_up(), 0.5 * hit.t, 2.0 * hit.t] {
                 let range = Interval::up_to(max);
                 let wanted = oracle.closest_hit(&ray, range).is_some();
-                assert_eq!(index.occluded(&ray, range), wanted, "{class} up to {max}: {ray:?}");
+                assert_eq!(
+                    index.occluded(&ray, range),
+                    wanted,
+                    "{name}: {class} to {max}: {ray:?}"
+                );
                 assert_eq!(wanted, max > hit.t);
             }
         }
@@ -125,7 +147,8 @@ fn on_spheres_among_triangles() {
     assert_agreement(&scene, DVec3::ZERO, 4_000);
 
     // Along the silhouettes, where rounding decides between a hit and a miss.
-    let (oracle, index) = (LinearScan::new(&scene), ObvhsBvh2::build(&scene));
+    let oracle = LinearScan::new(&scene);
+    let indexes = INDEXES.map(|(name, build)| (name, build(&scene)));
     let mut hits = 0;
     for _ in 0..20_000 {
         let sphere = scene.spheres[random.below(scene.spheres.len())].shape;
@@ -137,7 +160,9 @@ fn on_spheres_among_triangles() {
         let rim = sphere.center + aside * (sphere.radius * off / (1.0 - sine * sine).sqrt());
         let ray = Ray::new(origin, rim - origin);
         let wanted = oracle.closest_hit(&ray, Interval::POSITIVE);
-        assert_eq!(index.closest_hit(&ray, Interval::POSITIVE), wanted, "{ray:?}");
+        for (name, index) in &indexes {
+            assert_eq!(index.closest_hit(&ray, Interval::POSITIVE), wanted, "{name}: {ray:?}");
+        }
         hits += usize::from(wanted.is_some());
     }
     assert!(hits > 5_000, "{hits}");
@@ -177,7 +202,8 @@ fn on_degenerate_sets() {
     }
     for mesh in [Mesh::default(), triangle(x, y, z), identical, points, uneven] {
         let scene = scene_of(mesh);
-        let (oracle, index) = (LinearScan::new(&scene), ObvhsBvh2::build(&scene));
+        let oracle = LinearScan::new(&scene);
+        let indexes = INDEXES.map(|(name, build)| (name, build(&scene)));
         let mut random = Random::new(23);
         for _ in 0..200 {
             let origin = random.in_cube(3.0);
@@ -186,10 +212,10 @@ fn on_degenerate_sets() {
                 count => scene.mesh.positions[random.below(count)],
             };
             let ray = Ray::new(origin, target + 1e-4 * random.in_cube(1.0) - origin);
-            assert_eq!(
-                index.closest_hit(&ray, Interval::POSITIVE),
-                oracle.closest_hit(&ray, Interval::POSITIVE)
-            );
+            let wanted = oracle.closest_hit(&ray, Interval::POSITIVE);
+            for (name, index) in &indexes {
+                assert_eq!(index.closest_hit(&ray, Interval::POSITIVE), wanted, "{name}: {ray:?}");
+            }
         }
     }
 }
@@ -198,7 +224,8 @@ fn on_degenerate_sets() {
 #[test]
 fn invalid_rays_meet_nothing() {
     let scene = scene_of(icosphere(2));
-    let (oracle, index) = (LinearScan::new(&scene), ObvhsBvh2::build(&scene));
+    let oracle = LinearScan::new(&scene);
+    let indexes = INDEXES.map(|(name, build)| (name, build(&scene)));
     let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
     let mut rays = vec![Ray::new(DVec3::ZERO, DVec3::ZERO), Ray::new(DVec3::ZERO, -DVec3::ZERO)];
     for value in bad {
@@ -212,8 +239,10 @@ fn invalid_rays_meet_nothing() {
     }
     for ray in rays {
         assert_eq!(oracle.closest_hit(&ray, Interval::POSITIVE), None, "{ray:?}");
-        assert_eq!(index.closest_hit(&ray, Interval::POSITIVE), None, "{ray:?}");
-        assert!(!index.occluded(&ray, Interval::POSITIVE));
+        for (name, index) in &indexes {
+            assert_eq!(index.closest_hit(&ray, Interval::POSITIVE), None, "{name}: {ray:?}");
+            assert!(!index.occluded(&ray, Interval::POSITIVE), "{name}: {ray:?}");
+        }
     }
 }
 

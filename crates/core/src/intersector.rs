@@ -35,6 +35,8 @@ pub trait Intersector: Sync {
 pub trait Observer {
     /// A bounding volume is tested.
     fn box_test(&mut self) {}
+    /// A cell of a spatial subdivision is visited: of a grid, or a node of a tree that splits space.
+    fn cell_visit(&mut self) {}
     /// A primitive is tested.
     fn primitive_test(&mut self, _primitive: PrimitiveId) {}
 }
@@ -47,6 +49,8 @@ impl Observer for () {}
 pub struct TestCounts {
     /// Bounding volumes tested.
     pub boxes: u64,
+    /// Cells of a spatial subdivision visited.
+    pub cells: u64,
     /// Primitives tested.
     pub primitives: u64,
 }
@@ -54,6 +58,10 @@ pub struct TestCounts {
 impl Observer for TestCounts {
     fn box_test(&mut self) {
         self.boxes += 1;
+    }
+
+    fn cell_visit(&mut self) {
+        self.cells += 1;
     }
 
     fn primitive_test(&mut self, _primitive: PrimitiveId) {
