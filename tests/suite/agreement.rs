@@ -63,12 +63,11 @@ fn aimed(class: &str, mesh: &Mesh, offset: DVec3, random: &mut Random) -> Ray {
     }
 }
 
-/// An index of a scene.
-type Built<'s> = Box<dyn Intersector + 's>;
+/// Builds an index of a scene.
+type Build = for<'s> fn(&'s Scene) -> Box<dyn Intersector + 's>;
 
 /// Every index of chapter 4 but the oracle.
-const INDEXES: [(&str, fn(&Scene) -> Built<'_>); 1] =
-    [("obvhs-bvh2", |scene| Box::new(ObvhsBvh2::build(scene)))];
+const INDEXES: [(&str, Build); 1] = [("obvhs-bvh2", |scene| Box::new(ObvhsBvh2::build(scene)))];
 
 fn assert_agreement(scene: &Scene, offset: DVec3, rays: usize) {
     for (name, build) in INDEXES {
