@@ -105,6 +105,16 @@ impl<T: Shown> Shown for Option<T> {
     }
 }
 
+impl<A: Shown, B: Shown> Shown for (A, B) {
+    fn shown(&self) -> String {
+        format!("({}, {})", self.0.shown(), self.1.shown())
+    }
+
+    fn distance(&self, other: &Self) -> f64 {
+        self.0.distance(&other.0).max(self.1.distance(&other.1))
+    }
+}
+
 macro_rules! shown_exactly {
     ($($type:ty),*) => {$(
         impl Shown for $type {

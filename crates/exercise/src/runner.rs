@@ -109,17 +109,15 @@ fn describe(text: &mut String, file: &str, failure: &Failure) {
             }
         }
         Failure::Unwritten => {
-            line(text, format_args!("      still to be written: replace `todo!()` in {file}"))
+            line(text, format_args!("      still to be written: replace `todo!()` in {file}"));
         }
         Failure::Panicked(message) => {
-            line(text, format_args!("      your function panicked: {message}"))
+            line(text, format_args!("      your function panicked: {message}"));
         }
-        Failure::Endless => line(
-            text,
-            format_args!(
-                "      your function did not come back within 10 seconds: does its loop end?"
-            ),
-        ),
+        Failure::Endless => {
+            let endless = "your function did not come back within 10 seconds: does its loop end?";
+            line(text, format_args!("      {endless}"));
+        }
     }
 }
 

@@ -21,9 +21,10 @@ pub(crate) fn compare<S>(exercise: &Exercise<S>, yours: &Image, reference: &Imag
     let (width, height) = (reference.size().width, reference.size().height);
     let map = absolute_error_map(reference, yours)
         .unwrap_or_else(|_| vec![f64::NAN; reference.size().pixels()]);
-    let is_wrong = |error: &f64| !(*error <= VISIBLE);
+    // A NaN is wrong too.
+    let is_wrong = |error: &f64| error.is_nan() || *error > VISIBLE;
     let wrong = map.iter().filter(|error| is_wrong(error)).count();
-    let first_wrong = map.iter().position(|error| is_wrong(error)).map(|index| {
+    let first_wrong = map.iter().position(is_wrong).map(|index| {
         let index = index as u32;
         [index % width, index / width]
     });

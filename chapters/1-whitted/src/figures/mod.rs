@@ -71,7 +71,7 @@ fn pixelwise(a: &Image, b: &Image, combine: impl Fn(f32, f32) -> f32) -> Image {
 }
 
 /// A picture of a scene: `radiance` along each ray through the picture; `counts` is anything that adds up.
-fn picture<C: Default + Send + AddAssign>(
+pub(crate) fn picture<C: Default + Send + AddAssign>(
     scene: &Scene,
     size: ImageSize,
     sampling: PixelSampling,
