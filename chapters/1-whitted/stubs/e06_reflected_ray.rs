@@ -9,6 +9,5 @@ use chapter_1::exercises::prelude::*;
 ///
 /// The answer is unit and leads away from the surface.
 pub fn reflected_ray(incident: DVec3, n: DVec3) -> DVec3 {
-    let _ = (incident, n);
     todo!("E1.6: mirror the incident direction")
 }

@@ -4,8 +4,11 @@
 use chapter_1::exercises::{COURSE, Subject};
 use lancer_exercise::{Verified, passed_by_stub};
 
-#[path = "../stubs/e06_reflected_ray.rs"]
-mod e06_reflected_ray;
+#[allow(unused_variables)]
+mod stubs {
+    #[path = "../../stubs/e06_reflected_ray.rs"]
+    pub mod e06_reflected_ray;
+}
 
 /// The stubs as they are handed out: their functions have the types that the course asks for.
 const STUB: Subject =
