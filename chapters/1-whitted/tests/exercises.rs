@@ -5,8 +5,8 @@ use chapter_1::exercises::{COURSE, Subject};
 use lancer_exercise::{Verified, passed_by_stub};
 
 #[allow(unused_variables)]
+#[path = "../stubs"]
 mod stubs {
-    #[path = "../../stubs/e06_reflected_ray.rs"]
     pub mod e06_reflected_ray;
 }
 
