@@ -12,7 +12,7 @@ mod stubs {
 
 /// The stubs as they are handed out: their functions have the types that the course asks for.
 const STUB: Subject =
-    Subject { reflected_ray: e06_reflected_ray::reflected_ray, ..COURSE_REFERENCE };
+    Subject { reflected_ray: stubs::e06_reflected_ray::reflected_ray, ..COURSE_REFERENCE };
 
 const COURSE_REFERENCE: Subject = chapter_1::exercises::reference::SUBJECT;
 
