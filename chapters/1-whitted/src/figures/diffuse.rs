@@ -201,7 +201,7 @@ pub fn make(effort: Effort) -> Finished {
     let left = mean(&pixelwise(&outcomes[1].0, &reference, |a, b| a - b)) / mean(&indirect);
     let share = mean(&indirect) / mean(&reference);
     // What the constant leaves is no noise of the reference.
-    let is_seen = study.error(CONSTANT, "1", "RMSE") > 3.0 * residual;
+    let is_seen = study.error(CONSTANT, "1", "RMSE") > 2.0 * residual;
     let holds = constant_is_exact && paths_agree && is_seen;
     let claim = format!(
         "In a matte sphere a constant stands for the light between surfaces exactly, I_a = direct / (1 − ρ); \

