@@ -136,8 +136,8 @@ pub fn make(effort: Effort) -> Finished {
     let holds = within && (p + 0.5).abs() < 0.02 && integral_error < 1e-3;
     let last = EXPONENTS.len() - 1;
     let claim = format!(
-        "The highlight's half-width is acos(2^(−1/n)), within the resolution of the picture: {}° at n = 1, {}° \
-         at n = 1000, falling as n^{}; its light falls as 1/(n + 1), {}-fold, at the same peak.",
+        "The highlight's half-width is acos(2^(−1/n)), within the resolution of the picture: {}° at n = 1, {}° \
+         at n = 1000, falling as n^{}; its light falls as 1/(n + 1), {}-fold, at the same peak.",
         decimals(measured[0].to_degrees(), 1),
         decimals(measured[last].to_degrees(), 2),
         decimals(p, 2),
