@@ -62,56 +62,56 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
             says: "the three components are added as on the slide's last line: k_s and k_t are missing",
             caught_by: "a mirror shows the plate",
             mistake: |subject| {
-                subject.lr = |stage, ray, depth| slipped(Slip::NoShares, stage, ray, depth)
+                subject.lr = |stage, ray, depth| slipped(Slip::NoShares, stage, ray, depth);
             },
         },
         Mutant {
             says: "the ambient term ρ_d I_a is missing: shadows are black",
             caught_by: "the ambient light",
             mistake: |subject| {
-                subject.lr = |stage, ray, depth| slipped(Slip::NoAmbient, stage, ray, depth)
+                subject.lr = |stage, ray, depth| slipped(Slip::NoAmbient, stage, ray, depth);
             },
         },
         Mutant {
             says: "the emission ε is missing: lamps shine, but are black themselves",
             caught_by: "a plate that glows on one side",
             mistake: |subject| {
-                subject.lr = |stage, ray, depth| slipped(Slip::NoEmission, stage, ray, depth)
+                subject.lr = |stage, ray, depth| slipped(Slip::NoEmission, stage, ray, depth);
             },
         },
         Mutant {
             says: "the emission is sent to both sides: only the outside of a surface glows",
             caught_by: "a plate that glows on one side",
             mistake: |subject| {
-                subject.lr = |stage, ray, depth| slipped(Slip::TwoSided, stage, ray, depth)
+                subject.lr = |stage, ray, depth| slipped(Slip::TwoSided, stage, ray, depth);
             },
         },
         Mutant {
             says: "a ray that meets nothing is black: « couleur de fond » is missing",
             caught_by: "nothing is met",
             mistake: |subject| {
-                subject.lr = |stage, ray, depth| slipped(Slip::NoBackground, stage, ray, depth)
+                subject.lr = |stage, ray, depth| slipped(Slip::NoBackground, stage, ray, depth);
             },
         },
         Mutant {
             says: "the recursion ends one bounce early: a ray at Max_Prof is still traced, one beyond is not",
             caught_by: "Max_Prof",
             mistake: |subject| {
-                subject.lr = |stage, ray, depth| slipped(Slip::EarlyEnd, stage, ray, depth)
+                subject.lr = |stage, ray, depth| slipped(Slip::EarlyEnd, stage, ray, depth);
             },
         },
         Mutant {
             says: "the depth does not grow: nothing ends the recursion between two mirrors",
             caught_by: "two mirrors face each other",
             mistake: |subject| {
-                subject.lr = |stage, ray, depth| slipped(Slip::SameDepth, stage, ray, depth)
+                subject.lr = |stage, ray, depth| slipped(Slip::SameDepth, stage, ray, depth);
             },
         },
         Mutant {
             says: "the shadow rays are not asked: every lamp is taken as visible",
             caught_by: "a lamp behind a ball, and one beside it",
             mistake: |subject| {
-                subject.lr = |stage, ray, depth| slipped(Slip::NoShadows, stage, ray, depth)
+                subject.lr = |stage, ray, depth| slipped(Slip::NoShadows, stage, ray, depth);
             },
         },
         Mutant {
@@ -125,7 +125,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
             says: "at total reflection the share k_t is lost: it goes to the mirror ray",
             caught_by: "total reflection",
             mistake: |subject| {
-                subject.lr = |stage, ray, depth| slipped(Slip::LostShare, stage, ray, depth)
+                subject.lr = |stage, ray, depth| slipped(Slip::LostShare, stage, ray, depth);
             },
         },
     ],
