@@ -159,7 +159,8 @@ fn compare(
 ) -> Result<(), Mismatch> {
     let v = down(sin1, cos1);
     let got = (subject.refracted_ray)(v, N, n1, n2);
-    within(1e-10, || case(v, N, n1, n2), &got, &wanted.map(|(sin, cos)| down(sin, cos)))
+    let note = if wanted.is_none() { "; None is total reflection" } else { "" };
+    within(1e-10, || case(v, N, n1, n2) + note, &got, &wanted.map(|(sin, cos)| down(sin, cos)))
 }
 
 fn straight_on(subject: &Subject) -> Result<(), Mismatch> {

@@ -47,6 +47,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "nothing is met", run: background },
         Check { name: "Max_Prof", run: beyond },
         Check { name: "a matte floor under a lamp", run: matte },
+        Check { name: "its highlight, in the mirror direction", run: shiny },
         Check { name: "the ambient light", run: ambient },
         Check { name: "a lamp behind a ball, and one beside it", run: shadow },
         Check { name: "a plate that glows on one side", run: emission },
@@ -115,6 +116,13 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
             },
         },
         Mutant {
+            says: "V is the ray's own direction: the highlight needs the direction to the eye, −direction",
+            caught_by: "its highlight, in the mirror direction",
+            mistake: |subject| {
+                subject.lr = |stage, ray, depth| slipped(Slip::TowardsSurface, stage, ray, depth);
+            },
+        },
+        Mutant {
             says: "every surface is entered: where the ray leaves the glass, n₁ and n₂ change places",
             caught_by: "into a glass ball and out of it",
             mistake: |subject| {
@@ -143,6 +151,7 @@ enum Slip {
     EarlyEnd,
     SameDepth,
     NoShadows,
+    TowardsSurface,
     AlwaysEntering,
     LostShare,
 }
@@ -167,13 +176,13 @@ fn slipped(slip: Slip, stage: &Stage, ray: &Ray, depth: u32) -> Rgb {
         radiance += material.emission;
     }
     let n = surface.shading_normal_towards(-incident);
+    let to_eye = if slip == Slip::TowardsSurface { incident } else { -incident };
     for lamp in &stage.lamps {
         let shadow = reference::shadow_ray(&surface, lamp.position);
         let (l, distance) = shadow.direction.normalize_and_length();
         let is_lit = slip == Slip::NoShadows || stage.is_lit(&shadow);
         let intensity = lamp.intensity_towards(l);
-        radiance +=
-            reference::local_light(intensity, is_lit, distance, &reflectance, n, l, -incident);
+        radiance += reference::local_light(intensity, is_lit, distance, &reflectance, n, l, to_eye);
     }
     let sent = |k: Rgb, direction: DVec3| {
         let depth = if slip == Slip::SameDepth { depth } else { depth + 1 };
@@ -259,6 +268,17 @@ fn matte(subject: &Subject) -> Result<(), Mismatch> {
         compare(subject, &text, &words, to_origin(), 5, light * DIFFUSE)?;
     }
     Ok(())
+}
+
+/// The lamp stands where the eye's ray is mirrored to, so R·V = 1 and the highlight is ρ_s.
+fn shiny(subject: &Subject) -> Result<(), Mismatch> {
+    let text = "
+        light = [{ position = [-3, 4, 0], intensity = 50 }]
+        material.floor = { rho_d = [0.5, 0.25, 1], rho_s = 0.25, shininess = 20 }
+        polygon = [{ vertices = [[-9, 0, 9], [9, 0, 9], [9, 0, -9], [-9, 0, -9]], material = 'floor' }]";
+    let words = "a floor y = 0, ρ_d = (0.5, 0.25, 1), ρ_s = 0.25, n = 20, a lamp of 50 at (−3, 4, 0) in the mirror \
+                 direction";
+    compare(subject, text, words, to_origin(), 5, 2.0 * (0.8 * DIFFUSE + 0.25))
 }
 
 fn ambient(subject: &Subject) -> Result<(), Mismatch> {

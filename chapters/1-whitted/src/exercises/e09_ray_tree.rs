@@ -184,7 +184,7 @@ fn given_tree(subject: &Subject) -> Result<(), Mismatch> {
     let tree = lit(traced(Primary, 0, 1.0, vec![inner, lit(leaf(Mirror, 1), 1)]), 2);
     let wanted = RayCounts { primary: 1, mirror: 1, refracted: 2, shadow: 6 };
     compare_counts(
-        format!("count_rays of the tree\n          {}", tree.shown().replace('\n', "\n          ")),
+        format!("count_rays of the tree\n{}", tree.shown()),
         &(subject.count_rays)(&tree),
         &wanted,
     )
@@ -312,8 +312,8 @@ fn title(subject: &Subject) -> Result<(), Mismatch> {
 }
 
 const SIZE: ImageSize = ImageSize::new(240, 180);
-/// As many rays of one kind are a channel's full brightness.
-const BRIGHTEST: f64 = 16.0;
+/// As many rays of a kind are its channel's full brightness: surfaces face two lamps.
+const BRIGHTEST: Rgb = Rgb::new(8.0, 8.0, 32.0);
 
 fn tree_at(subject: &Subject, scene: &Scene, x: f64, y: f64) -> Node {
     let ray = (subject.primary_ray)(&scene.camera, SIZE, x, y);

@@ -196,9 +196,11 @@ const SIDE: u32 = 112;
 /// Rows of a bar and of the gap above it.
 const BAR: u32 = 8;
 const GAP: u32 = 4;
+/// Columns of the first bar.
+const LONGEST: f64 = 0.9 * SIDE as f64;
 
 /// The checkered floor with 1 × 1, 2 × 2 and 4 × 4 samples per pixel by the subject's own tracer, and below
-/// each picture its error against 8 × 8 samples, in bars of which the first is as wide as the picture.
+/// each picture its error against 8 × 8 samples, in bars of which the first is nearly as wide as the picture.
 fn draw(subject: &Subject) -> Image {
     let pictures = [1, 2, 4].map(|n| floor(subject, n));
     let converged = floor(subject, 8);
@@ -206,7 +208,7 @@ fn draw(subject: &Subject) -> Image {
     painted(ImageSize::new(3 * SIDE, SIDE + GAP + BAR), |x, y| {
         let (column, row) = (x as u32, y as u32);
         let (part, column) = ((column / SIDE) as usize, column % SIDE);
-        let is_bar = f64::from(column) < f64::from(SIDE) * errors[part] / errors[0];
+        let is_bar = f64::from(column) < LONGEST * errors[part] / errors[0];
         match row.checked_sub(SIDE) {
             None => pictures[part][(row * SIDE + column) as usize],
             Some(below) if below >= GAP && is_bar => Rgb::new(0.9, 0.4, 0.0),

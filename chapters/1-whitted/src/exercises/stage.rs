@@ -60,8 +60,7 @@ impl<'a> Stage<'a> {
         let traced = self.traced.fetch_add(1, Ordering::Relaxed);
         assert!(
             traced < 8 * full,
-            "{traced} rays have been traced for one, and Max_Prof = {} allows {full}: is the depth one \
-             more in each call?",
+            "{traced} rays have been traced where Max_Prof = {} allows {full}: is the depth one more in each call?",
             self.max_depth
         );
     }
