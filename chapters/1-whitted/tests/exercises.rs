@@ -4,15 +4,32 @@
 use chapter_1::exercises::{COURSE, Subject};
 use lancer_exercise::{Verified, passed_by_stub};
 
-#[allow(unused_variables)]
+/// What the later stubs call: in a student's workspace, their own functions.
+mod yours {
+    pub use chapter_1::exercises::reference::*;
+}
+
+#[allow(unused_imports, unused_variables)]
 #[path = "../stubs"]
 mod stubs {
     pub mod e06_reflected_ray;
+    pub mod e07_refracted_ray;
+    pub mod e08_lr;
+    pub mod e09_ray_tree;
+    pub mod e10_samples;
 }
 
 /// The stubs as they are handed out: their functions have the types that the course asks for.
-const STUB: Subject =
-    Subject { reflected_ray: stubs::e06_reflected_ray::reflected_ray, ..COURSE_REFERENCE };
+const STUB: Subject = Subject {
+    reflected_ray: stubs::e06_reflected_ray::reflected_ray,
+    refracted_ray: stubs::e07_refracted_ray::refracted_ray,
+    lr: stubs::e08_lr::lr,
+    ray_tree: stubs::e09_ray_tree::ray_tree,
+    count_rays: stubs::e09_ray_tree::count_rays,
+    pixel_mean: stubs::e10_samples::pixel_mean,
+    rms_error: stubs::e10_samples::rms_error,
+    ..COURSE_REFERENCE
+};
 
 const COURSE_REFERENCE: Subject = chapter_1::exercises::reference::SUBJECT;
 

@@ -23,7 +23,9 @@ impl Mismatch {
 
 impl fmt::Display for Mismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { case, got, wanted } = self;
+        // The lines of a longer text stand below each other.
+        let [case, got, wanted] =
+            [&self.case, &self.got, &self.wanted].map(|text| text.replace('\n', "\n          "));
         writeln!(f, "  case    {case}")?;
         writeln!(f, "  got     {got}")?;
         write!(f, "  wanted  {wanted}")
@@ -176,6 +178,12 @@ mod tests {
             [0.0, 1.0, -0.5, 1.0 / 3.0, 123_456.7, 2e-5, 1e9, f64::INFINITY].map(|n| n.shown());
         let wanted = ["0", "1", "-0.5", "0.333333", "123457", "2.00000e-5", "1.00000e9", "inf"];
         assert_eq!(shown, wanted);
+    }
+
+    #[test]
+    fn longer_texts_keep_their_shape() {
+        let text = Mismatch::new("tree", "a\n  b", "a").to_string();
+        assert_eq!(text, "  case    tree\n  got     a\n            b\n  wanted  a");
     }
 
     #[test]

@@ -2,24 +2,30 @@
 //! [`Subject`]; the stubs they start from are in `stubs/`.
 
 mod e06_reflected_ray;
+mod e07_refracted_ray;
+mod e08_lr;
+mod e09_ray_tree;
+mod e10_samples;
 mod stage;
 
 pub mod prelude;
 pub mod reference;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use lancer_core::Rgb;
 use lancer_core::geometry::{Interval, Ray, Sphere};
 use lancer_core::illumination::Reflectance;
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::intersector::{Intersector, LinearScan};
+use lancer_core::render::{Control, render_pixels};
 use lancer_core::sampling::PixelSampling;
 use lancer_core::scene::{Camera, Scene};
 use lancer_core::world::SurfacePoint;
-use lancer_exercise::Course;
-use lancer_whitted::{Call, RayCounts};
+use lancer_exercise::{Course, Shown};
+use lancer_whitted::{Call, RayCounts, RayKind};
 
 use crate::figures::picture;
+use crate::scenes;
 
 pub use stage::{Node, Stage};
 
@@ -62,7 +68,13 @@ pub struct Subject {
 /// The chapter's exercises.
 pub static COURSE: Course<Subject> = Course {
     package: "chapter-1",
-    exercises: &[e06_reflected_ray::EXERCISE],
+    exercises: &[
+        e06_reflected_ray::EXERCISE,
+        e07_refracted_ray::EXERCISE,
+        e08_lr::EXERCISE,
+        e09_ray_tree::EXERCISE,
+        e10_samples::EXERCISE,
+    ],
     reference: reference::SUBJECT,
 };
 
@@ -78,4 +90,36 @@ fn drawn(
         color(ray, hit.map(|hit| scene.surface_at(ray, &hit)))
     })
     .image
+}
+
+/// A picture from what there is in the centre of each pixel, at the film point (x, y).
+fn painted(size: ImageSize, radiance: impl Fn(f64, f64) -> Rgb + Sync) -> Image {
+    let radiance = |film: DVec2, _: &mut u64| radiance(film.x, film.y);
+    let painting = render_pixels(size, PixelSampling::CENTER, Control::default(), radiance);
+    painting.expect("nobody cancels a picture").image
+}
+
+/// The call of LR for a primary ray.
+fn from_eye(ray: Ray) -> Call {
+    Call { ray, depth: 0, weight: 1.0, kind: RayKind::Primary }
+}
+
+/// Primary rays all over the title scene and their places in words, those with the fewest calls first: the
+/// simplest counter-example comes before the others.
+fn title_rays(max_depth: u32) -> (Scene, Vec<(String, Ray)>) {
+    let (scene, size) = (scenes::whitted(), ImageSize::new(64, 48));
+    let rays = scene.camera.primary_rays(size);
+    let pixels = (0..64).step_by(7).flat_map(|x| (0..48).step_by(5).map(move |y| (x, y)));
+    let mut rays: Vec<_> = pixels
+        .map(|(x, y)| {
+            let ray = rays.through(f64::from(x) + 0.5, f64::from(y) + 0.5);
+            let place = format!("scene whitted, column {x} and row {y} of {size}");
+            (format!("{place}; {}, Max_Prof {max_depth}", ray.shown()), ray)
+        })
+        .collect();
+    rays.sort_by_cached_key(|(_, ray)| {
+        let stage = Stage::new(&scene, max_depth, reference::SUBJECT);
+        reference::recorded(&stage, &from_eye(*ray)).nodes.len()
+    });
+    (scene, rays)
 }

@@ -8,7 +8,7 @@ use lancer_core::image::ImageSize;
 use lancer_core::optics::{reflect, refract};
 use lancer_core::sampling::{Pattern, PixelSampling};
 use lancer_core::scene::Camera;
-use lancer_core::world::{SurfacePoint, World};
+use lancer_core::world::{PointSource, SurfacePoint, World};
 use lancer_whitted::{AtLimit, Call, RayCounts, RayEnd, RayTree, Settings, Whitted};
 
 use super::{Film, Meeting, Node, Stage, Subject};
@@ -84,24 +84,36 @@ pub fn lr(stage: &Stage, ray: &Ray, depth: u32) -> Rgb {
     whitted(stage, depth).map_or(Rgb::ZERO, |method| method.trace(ray, &mut ()))
 }
 
-/// [`Subject::ray_tree`].
-pub fn ray_tree(stage: &Stage, call: &Call) -> Node {
+/// The calls that follow from one, with depths and weights counted from it; none beyond Max_Prof.
+pub(super) fn recorded(stage: &Stage, call: &Call) -> RayTree {
     let mut tree = RayTree::default();
     if let Some(method) = whitted(stage, call.depth) {
         method.trace(&call.ray, &mut tree);
     }
+    tree
+}
+
+/// [`Subject::ray_tree`].
+pub fn ray_tree(stage: &Stage, call: &Call) -> Node {
+    let tree = recorded(stage, call);
     let mut root = Node::untraced(call);
     if !tree.nodes.is_empty() {
-        fill(&mut root, &tree, 0, call);
+        fill(&mut root, stage, &tree, 0, call);
     }
     root
 }
 
 /// Copies a recorded call and those that it made; the recording began at `first`.
-fn fill(node: &mut Node, tree: &RayTree, index: usize, first: &Call) {
+fn fill(node: &mut Node, stage: &Stage, tree: &RayTree, index: usize, first: &Call) {
     let own = &tree.nodes[index];
     node.traced = !matches!(own.end, RayEnd::Cut);
-    node.shadows = own.shadows.len() as u32;
+    if let RayEnd::Surface { hit, .. } = own.end {
+        // The method itself casts fewer: none to a lamp that would add nothing.
+        let surface = stage.scene.surface_at(&own.call.ray, &hit);
+        let n = surface.shading_normal_towards(-own.call.ray.direction);
+        let in_front = |lamp: &&PointSource| n.dot(lamp.position - surface.position) > 0.0;
+        node.shadows = stage.lamps.iter().filter(in_front).count() as u32;
+    }
     for (child, made) in
         tree.nodes.iter().enumerate().filter(|(_, made)| made.parent == Some(index))
     {
@@ -111,7 +123,7 @@ fn fill(node: &mut Node, tree: &RayTree, index: usize, first: &Call) {
             ..made.call
         };
         let mut next = Node::untraced(&call);
-        fill(&mut next, tree, child, first);
+        fill(&mut next, stage, tree, child, first);
         node.children.push(next);
     }
 }

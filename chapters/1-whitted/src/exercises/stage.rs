@@ -1,12 +1,17 @@
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use lancer_core::geometry::{Interval, Ray};
+use lancer_core::illumination::Reflectance;
 use lancer_core::intersector::{Hit, Intersector};
 use lancer_core::scene::Scene;
 use lancer_core::world::{PointSource, SurfacePoint};
+use lancer_exercise::Shown;
 use lancer_whitted::{Call, RayKind};
 
 use super::Subject;
 
-/// A scene whose shapes are met by a subject's own functions, for the exercises that need all of them.
+/// A scene whose shapes are met by a subject's own functions, set up for one primary ray and all that
+/// follows from it.
 pub struct Stage<'a> {
     /// What stands on it.
     pub scene: &'a Scene,
@@ -15,12 +20,14 @@ pub struct Stage<'a> {
     /// Max_Prof: the largest number of bounces between the eye and a surface.
     pub max_depth: u32,
     subject: Subject,
+    traced: AtomicU64,
 }
 
 impl<'a> Stage<'a> {
     /// A stage on which `subject` intersects.
     pub fn new(scene: &'a Scene, max_depth: u32, subject: Subject) -> Self {
-        Self { scene, lamps: scene.point_sources(), max_depth, subject }
+        let lamps = scene.point_sources();
+        Self { scene, lamps, max_depth, subject, traced: AtomicU64::new(0) }
     }
 
     /// The surface that a ray meets first.
@@ -29,9 +36,33 @@ impl<'a> Stage<'a> {
         Some(self.scene.surface_at(ray, &hit))
     }
 
+    /// ρ_d, ρ_s and n at a point of a surface.
+    pub fn reflectance(&self, surface: &SurfacePoint) -> Reflectance {
+        let material = self.scene.material(surface.material);
+        Reflectance {
+            diffuse: material.rho_d.at(surface.position, surface.geometric_normal),
+            specular: material.rho_s,
+            shininess: material.shininess,
+        }
+    }
+
     /// vis(i): whether a shadow ray reaches its lamp, at t = 1.
     pub fn is_lit(&self, shadow_ray: &Ray) -> bool {
         !self.occluded(shadow_ray, Interval::up_to(1.0))
+    }
+
+    /// Ends a recursion that does not end, before it fills the stack.
+    ///
+    /// # Panics
+    /// If there have been far more rays than any tree of depth Max_Prof has, 2^(Max_Prof + 1) − 1.
+    fn count_traced(&self) {
+        let full = (2_u64 << self.max_depth.min(32)) - 1;
+        let traced = self.traced.fetch_add(1, Ordering::Relaxed);
+        assert!(
+            traced < 8 * full,
+            "{traced} rays have been traced where Max_Prof = {} allows {full}: is the depth one more in each call?",
+            self.max_depth
+        );
     }
 
     fn hits<'s>(&'s self, ray: &'s Ray, range: Interval) -> impl Iterator<Item = Hit> + 's {
@@ -53,6 +84,7 @@ impl<'a> Stage<'a> {
 
 impl Intersector for Stage<'_> {
     fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
+        self.count_traced();
         self.hits(ray, range).min_by(|a, b| a.t.total_cmp(&b.t))
     }
 
@@ -72,7 +104,8 @@ pub struct Node {
     pub weight: f64,
     /// Whether it was traced: not beyond Max_Prof.
     pub traced: bool,
-    /// Shadow rays cast where it met a surface.
+    /// Shadow rays cast where it met a surface: one to each lamp in front, N·L > 0, with N on the side that
+    /// the ray came from.
     pub shadows: u32,
     /// The calls that it made: the refracted ray first, then the mirror ray.
     pub children: Vec<Node>,
@@ -83,5 +116,34 @@ impl Node {
     pub fn untraced(call: &Call) -> Self {
         let Call { kind, depth, weight, .. } = *call;
         Self { kind, depth, weight, traced: false, shadows: 0, children: Vec::new() }
+    }
+}
+
+/// A line for each call, those that it made below it.
+impl Shown for Node {
+    fn shown(&self) -> String {
+        let Self { kind, depth, weight, traced, shadows, children } = self;
+        let kind = format!("{kind:?}").to_lowercase();
+        let end = if *traced {
+            format!("traced, shadow rays: {shadows}")
+        } else {
+            "cut at Max_Prof".to_owned()
+        };
+        let mut text = format!("{kind}, depth {depth}, weight {}, {end}", weight.shown());
+        for line in children.iter().map(Shown::shown).collect::<Vec<_>>().join("\n").lines() {
+            text += &format!("\n  {line}");
+        }
+        text
+    }
+
+    fn distance(&self, other: &Self) -> f64 {
+        let exact =
+            |node: &Self| (node.kind, node.depth, node.traced, node.shadows, node.children.len());
+        if exact(self) != exact(other) {
+            return f64::INFINITY;
+        }
+        let children = self.children.iter().zip(&other.children);
+        let children = children.map(|(a, b)| a.distance(b));
+        children.fold(self.weight.distance(&other.weight), f64::max)
     }
 }
