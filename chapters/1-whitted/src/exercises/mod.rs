@@ -1,18 +1,24 @@
 //! The chapter's exercises, one file each, in the slides' order. A student writes the functions of
 //! [`Subject`]; the stubs they start from are in `stubs/`.
 
+mod e01_primary_ray;
+mod e02_ray_triangle;
+mod e03_ray_sphere;
+mod e04_shadow_ray;
+mod e05_local_light;
 mod e06_reflected_ray;
 mod stage;
 
 pub mod prelude;
 pub mod reference;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use lancer_core::Rgb;
 use lancer_core::geometry::{Interval, Ray, Sphere};
 use lancer_core::illumination::Reflectance;
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::intersector::{Intersector, LinearScan};
+use lancer_core::render::{Control, render_pixels};
 use lancer_core::sampling::PixelSampling;
 use lancer_core::scene::{Camera, Scene};
 use lancer_core::world::SurfacePoint;
@@ -62,7 +68,14 @@ pub struct Subject {
 /// The chapter's exercises.
 pub static COURSE: Course<Subject> = Course {
     package: "chapter-1",
-    exercises: &[e06_reflected_ray::EXERCISE],
+    exercises: &[
+        e01_primary_ray::EXERCISE,
+        e02_ray_triangle::EXERCISE,
+        e03_ray_sphere::EXERCISE,
+        e04_shadow_ray::EXERCISE,
+        e05_local_light::EXERCISE,
+        e06_reflected_ray::EXERCISE,
+    ],
     reference: reference::SUBJECT,
 };
 
@@ -78,4 +91,11 @@ fn drawn(
         color(ray, hit.map(|hit| scene.surface_at(ray, &hit)))
     })
     .image
+}
+
+/// A picture by film points, in pixels, one in each pixel's centre.
+fn on_film(size: ImageSize, radiance: impl Fn(f64, f64) -> Rgb + Sync) -> Image {
+    let radiance = |film: DVec2, _: &mut u64| radiance(film.x, film.y);
+    let rendering = render_pixels(size, PixelSampling::CENTER, Control::default(), radiance);
+    rendering.expect("nobody cancels an exercise").image
 }

@@ -16,7 +16,7 @@ use lancer_figure::{
 
 use super::acne::Site;
 use super::quadratic::far_sphere;
-use super::watertight::aimed;
+use super::watertight::{EDGES, VERTICES, aimed};
 use crate::hard_boxes::{Class, HardBox};
 use crate::naive::{BySigns, epsilon_shadow_ray, min_max_box, moeller_trumbore, textbook_sphere};
 
@@ -49,7 +49,7 @@ type Run<'a> = Box<dyn Fn() -> (Wrong, u64) + 'a>;
 pub fn make(effort: Effort) -> Finished {
     let mesh = icosphere(3);
     let count = effort.pick(400, 3_000);
-    let rays = [aimed(&mesh, 1, count), aimed(&mesh, 2, count)].concat();
+    let rays = [aimed(&mesh, EDGES, count), aimed(&mesh, VERTICES, count)].concat();
     let (spheres, boxes) = (far_spheres(), hard_boxes());
     let sites: Vec<Site> = [0.0, 1e6]
         .into_iter()
