@@ -191,6 +191,29 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                 };
             },
         },
+        Mutant {
+            says: "pixels are not square: the film is height/width as wide as high, where it should be \
+                   width/height",
+            caught_by: "the middle of the right edge",
+            mistake: |subject| {
+                subject.primary_ray = |camera, size, x, y| {
+                    let (width, height) = (f64::from(size.width), f64::from(size.height));
+                    let aspect = height / width;
+                    let squeezed = 0.5 * width + (x - 0.5 * width) * aspect * aspect;
+                    primary_ray(camera, size, squeezed, y)
+                };
+            },
+        },
+        Mutant {
+            says: "the ray looks backwards: from the eye to the film is look_at − eye, not eye − look_at",
+            caught_by: "the middle of the picture",
+            mistake: |subject| {
+                subject.primary_ray = |camera, size, x, y| {
+                    let behind = Camera { look_at: 2.0 * camera.eye - camera.look_at, ..*camera };
+                    primary_ray(&behind, size, x, y)
+                };
+            },
+        },
     ],
     draw,
     explain: None,

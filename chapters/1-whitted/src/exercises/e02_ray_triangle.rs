@@ -28,7 +28,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         predict: "each pixel's ray of the relief is aimed at a corner that six triangles share: with a test \
                   that is right for almost every ray, what does the relief look like?",
         vary: "write `c.x.mul_add(b.y, -(c.y * b.x))` for the first edge function, and the others alike: it is \
-               rounded once instead of twice, so more accurate. Why do rays slip through?",
+               rounded once instead of twice, so more accurate. Check again: why do rays slip through?",
         hints: [
             "Seen along the ray the triangle is flat, and the ray is the point (0, 0). The ray passes on the \
              same side of all three edges, or it misses; each edge has a function whose sign is the side. \
@@ -217,6 +217,17 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                 };
             },
         },
+        Mutant {
+            says: "t is not divided by det = U + V + W",
+            caught_by: "straight down, by hand",
+            mistake: |subject| {
+                subject.ray_triangle = |corners, ray| {
+                    let (t, weights) = ray_triangle(corners, ray)?;
+                    let t = t * det(corners, ray);
+                    (t > 0.0).then_some((t, weights))
+                };
+            },
+        },
     ],
     draw,
     explain: None,
@@ -270,13 +281,13 @@ fn misses(subject: &Subject, what: &str, corners: [DVec3; 3], ray: &Ray) -> Resu
 
 /// In the plane z = 0.
 const FLAT: [DVec3; 3] = [DVec3::ZERO, DVec3::new(8.0, 0.0, 0.0), DVec3::new(0.0, 8.0, 0.0)];
-/// A third, a sixth and a half of these corners are (2, 2.5, 2) together: [`INSIDE`].
+/// A third, a half and a sixth of these corners are (2, 2.5, 2) together: [`INSIDE`].
 const SLANTED: [DVec3; 3] =
-    [DVec3::new(3.0, 6.0, -6.0), DVec3::new(3.0, 6.0, 0.0), DVec3::new(1.0, -1.0, 8.0)];
+    [DVec3::new(3.0, 6.0, -6.0), DVec3::new(1.0, -1.0, 8.0), DVec3::new(3.0, 6.0, 0.0)];
 const INSIDE: DVec3 = DVec3::new(2.0, 2.5, 2.0);
 
 fn weights() -> DVec3 {
-    DVec3::new(1.0 / 3.0, 1.0 / 6.0, 1.0 / 2.0)
+    DVec3::new(1.0 / 3.0, 1.0 / 2.0, 1.0 / 6.0)
 }
 
 /// A ray along −z through (x, y) of [`FLAT`], which it meets at t = 3.
@@ -286,7 +297,13 @@ fn down(x: f64, y: f64) -> Ray {
 
 fn straight_down(subject: &Subject) -> Result<(), Mismatch> {
     // (1, 2) = 5/8 a + 1/8 b + 2/8 c.
-    meets(subject, "", FLAT, &down(1.0, 2.0), (3.0, DVec3::new(0.625, 0.125, 0.25)))
+    meets(
+        subject,
+        "aimed at the inside: ",
+        FLAT,
+        &down(1.0, 2.0),
+        (3.0, DVec3::new(0.625, 0.125, 0.25)),
+    )
 }
 
 /// The longest axis of the direction is x, y and z in turn, and points both ways.
@@ -296,7 +313,7 @@ fn in_space(subject: &Subject) -> Result<(), Mismatch> {
     for direction in directions {
         for turn in turns {
             let ray = Ray::new(turn(INSIDE - 2.0 * direction), turn(direction));
-            meets(subject, "", SLANTED.map(turn), &ray, (2.0, weights()))?;
+            meets(subject, "aimed at the inside: ", SLANTED.map(turn), &ray, (2.0, weights()))?;
         }
     }
     Ok(())

@@ -178,6 +178,33 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                     |sphere, ray| roots(sphere, ray)?.into_iter().find(|t| *t > 0.0);
             },
         },
+        Mutant {
+            says: "F points from the ray's origin to the centre: that turns the sign of F·D, and with it those \
+                   of the roots",
+            caught_by: "straight ahead",
+            mistake: |subject| {
+                subject.ray_sphere = |sphere, ray| {
+                    let turned = roots(sphere, ray)?.map(|t| -t);
+                    turned.into_iter().rev().find(|t| *t > 0.0)
+                };
+            },
+        },
+        Mutant {
+            says: "D was normalised on the way, and t is a distance: it must be in units of D's length. Besides, \
+                   the distance of the centre to the line comes from |F|² − (F·D)², which cancels far away as \
+                   the textbook's discriminant does",
+            caught_by: "a direction of length 7",
+            mistake: |subject| {
+                subject.ray_sphere = |sphere, ray| {
+                    let to_center = sphere.center - ray.origin;
+                    let along = to_center.dot(ray.direction.normalize());
+                    let aside = to_center.length_squared() - along * along;
+                    let half = sphere.radius * sphere.radius - aside;
+                    let half = (half >= 0.0).then(|| half.sqrt())?;
+                    [along - half, along + half].into_iter().find(|t| *t > 0.0)
+                };
+            },
+        },
     ],
     draw,
     explain: None,
@@ -368,8 +395,8 @@ fn draw(subject: &Subject) -> Image {
                 if beside >= 1.0 {
                     return empty;
                 }
-                // Far from the origin the point is rounded, off the sphere or into it.
-                let center = DVec3::new(30.1, -20.3, 10.7);
+                // The point is rounded, off the sphere or into it.
+                let center = DVec3::new(0.3, -0.7, 0.9);
                 let n = DVec3::new(x, y, (1.0 - beside).sqrt());
                 let is_lit = hit(center, &Ray::new(center + n, TO_LIGHT)).is_none();
                 Rgb::new(0.85, 0.8, 0.7) * if is_lit { 0.9 } else { 0.1 }

@@ -56,7 +56,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
     ],
     mutants: &[
         Mutant {
-            says: "the ray starts at the point itself, which rounding left on either side of the surface: half of \
+            says: "the origin is not moved: rounding left the point on either side of the surface, and half of \
                    the shadow rays meet the surface that they leave (acne)",
             caught_by: "shadows far from the origin",
             mistake: |subject| {
@@ -164,6 +164,36 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                 };
             },
         },
+        Mutant {
+            says: "the ray starts at `position` as it comes: rounding left that point on either side of the \
+                   surface (acne), and a smooth mesh starts at `lifted`",
+            caught_by: "shadows far from the origin",
+            mistake: |subject| {
+                subject.shadow_ray = |surface, lamp| aimed(surface.position, lamp);
+            },
+        },
+        Mutant {
+            says: "the origin is moved along the shading normal: the surface itself lies across the geometric one",
+            caught_by: "a smooth mesh starts lifted",
+            mistake: |subject| {
+                subject.shadow_ray = |surface, lamp| {
+                    let geometric_normal = surface.shading_normal;
+                    shadow_ray(&SurfacePoint { geometric_normal, ..*surface }, lamp)
+                };
+            },
+        },
+        Mutant {
+            says: "N and error are multiplied component by component: the move must be along N, by |N| · error, \
+                   which is one number",
+            caught_by: "a slanted surface, by hand",
+            mistake: |subject| {
+                subject.shadow_ray = |surface, lamp| {
+                    let (start, n) = (start(surface, lamp), surface.geometric_normal);
+                    let side = 1.0_f64.copysign(n.dot(lamp - start));
+                    aimed(start + side * surface.error * n, lamp)
+                };
+            },
+        },
     ],
     draw,
     explain: None,
@@ -195,29 +225,33 @@ fn flat(position: DVec3, error: DVec3, n: DVec3) -> SurfacePoint {
     }
 }
 
+/// Whether the ray starts at `origin` and leads to the lamp from there.
 fn compare(
     subject: &Subject,
     surface: &SurfacePoint,
     lamp: DVec3,
     origin: DVec3,
 ) -> Result<(), Mismatch> {
-    let case = || {
-        let SurfacePoint { position, error, geometric_normal, shading_normal, lifted, .. } =
+    let case = |what: &str| {
+        let SurfacePoint { position, error, geometric_normal: n, shading_normal, lifted, .. } =
             surface;
+        let side = if n.dot(lamp - *position) > 0.0 { "outside" } else { "inside" };
         let mut case = format!(
-            "position {}, error {}, geometric normal {}, lamp {}",
+            "{what} for position {}, error {}, geometric normal {}, lamp on the {side} {}",
             position.shown(),
             error.shown(),
-            geometric_normal.shown(),
+            n.shown(),
             lamp.shown()
         );
         if lifted != position {
-            case +=
-                &format!(", lifted {}, shading normal {}", lifted.shown(), shading_normal.shown());
+            let (lifted, shading_normal) = (lifted.shown(), shading_normal.shown());
+            case += &format!(", lifted {lifted}, shading normal {shading_normal}");
         }
         case
     };
-    within(1e-12, case, &(subject.shadow_ray)(surface, lamp), &aimed(origin, lamp))
+    let ray = (subject.shadow_ray)(surface, lamp);
+    within(1e-12, || case("the origin"), &ray.origin, &origin)?;
+    within(1e-12, || case("the direction"), &ray.direction, &(lamp - origin))
 }
 
 /// |N| · error is the error's y.
@@ -242,7 +276,7 @@ fn lamp_behind(subject: &Subject) -> Result<(), Mismatch> {
     compare(subject, &surface, DVec3::new(-3.0, 2.0, -5.0), POINT - REACH * SLANTED)
 }
 
-/// A facet that the smooth surface bulges out from, by 0.2 along a direction between the normals.
+/// A facet that the smooth surface bulges out from, by about 0.2.
 fn smooth() -> SurfacePoint {
     SurfacePoint {
         shading_normal: DVec3::new(3.0, -2.0, 6.0) / 7.0,

@@ -197,6 +197,25 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                 };
             },
         },
+        Mutant {
+            says: "L and V are exchanged: the matte part depends on the lamp's direction, not on the eye's",
+            caught_by: "a matte surface at a slant",
+            mistake: |subject| {
+                subject.local_light = |i, visible, d, reflectance, n, l, v| {
+                    local_light(i, visible, d, reflectance, n, v, l)
+                };
+            },
+        },
+        Mutant {
+            says: "absolute values are taken: what is negative is behind, and counts as 0",
+            caught_by: "the eye far from the mirror direction",
+            mistake: |subject| {
+                subject.local_light = |i, visible, d, reflectance, n, l, v| {
+                    let highlight = lobe(r_dot_v(n, l, v).abs(), reflectance);
+                    i * attenuation(visible, d) * (reflectance.diffuse * n.dot(l).abs() + highlight)
+                };
+            },
+        },
     ],
     draw,
     explain: None,
