@@ -302,9 +302,9 @@ fn right_edge(subject: &Subject) -> Result<(), Mismatch> {
 fn opening_angle(subject: &Subject) -> Result<(), Mismatch> {
     let fov = 2.0 * 0.75_f64.atan().to_degrees();
     let camera = Camera { fov, look_at: DVec3::new(0.0, 0.0, -10.0), ..PLAIN };
-    // From the middle half a pixel to the left and one up.
-    let direction = DVec3::new(-0.375, 0.75, -1.0).normalize();
-    compare(subject, &camera, WIDE, (1.5, 0.0), direction)
+    // The centre of a pixel: from the middle half a pixel to the left and half a one up.
+    let direction = DVec3::new(-0.375, 0.375, -1.0).normalize();
+    compare(subject, &camera, WIDE, (1.5, 0.5), direction)
 }
 
 /// A pixel's side is 1/3 with six rows: (7, 2) is one to the right and 1/3 up on a film eight pixels wide.
