@@ -1,6 +1,11 @@
 //! The chapter's exercises, one file each, in the slides' order. A student writes the functions of
 //! [`Subject`]; the stubs they start from are in `stubs/`.
 
+mod e01_primary_ray;
+mod e02_ray_triangle;
+mod e03_ray_sphere;
+mod e04_shadow_ray;
+mod e05_local_light;
 mod e06_reflected_ray;
 mod e07_refracted_ray;
 mod e08_lr;
@@ -69,6 +74,11 @@ pub struct Subject {
 pub static COURSE: Course<Subject> = Course {
     package: "chapter-1",
     exercises: &[
+        e01_primary_ray::EXERCISE,
+        e02_ray_triangle::EXERCISE,
+        e03_ray_sphere::EXERCISE,
+        e04_shadow_ray::EXERCISE,
+        e05_local_light::EXERCISE,
         e06_reflected_ray::EXERCISE,
         e07_refracted_ray::EXERCISE,
         e08_lr::EXERCISE,

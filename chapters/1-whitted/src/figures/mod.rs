@@ -1,6 +1,6 @@
 //! The figures of the chapter, one file each. To add one: write its `make`, name it in [`FIGURES`].
 
-mod acne;
+pub(crate) mod acne;
 mod aliasing;
 mod depth;
 mod descartes;
@@ -11,13 +11,13 @@ mod indirect;
 mod inverse_square;
 mod local_model;
 mod pruning;
-mod quadratic;
+pub(crate) mod quadratic;
 mod ray_tree;
 mod safety;
 mod slab;
 mod vanishing;
 mod visible;
-mod watertight;
+pub(crate) mod watertight;
 mod where_time_goes;
 
 use std::ops::AddAssign;

@@ -15,7 +15,7 @@ use lancer_figure::{
 
 use super::acne::Site;
 use super::quadratic::far_sphere;
-use super::watertight::{aimed, leaking, triangles};
+use super::watertight::{EDGES, VERTICES, aimed, leaking, triangles};
 use crate::hard_boxes::{Class, HardBox};
 use crate::naive::{epsilon_shadow_ray, min_max_box, textbook_sphere};
 
@@ -48,7 +48,7 @@ type Run<'a> = Box<dyn Fn() -> (Wrong, u64) + 'a>;
 pub fn make(effort: Effort) -> Finished {
     let mesh = icosphere(3);
     let count = effort.pick(400, 3_000);
-    let rays = [aimed(&mesh, 1, count), aimed(&mesh, 2, count)].concat();
+    let rays = [aimed(&mesh, EDGES, count), aimed(&mesh, VERTICES, count)].concat();
     let triangles = triangles(&mesh);
     let meshes = |test: usize| {
         let (answers, tests) = leaking(test, &triangles, &rays);

@@ -67,6 +67,9 @@ fn missing<'a, T: Fn(Corners) -> Option<f64>>(
 
 /// Where the rays go.
 const AIMS: [&str; 3] = ["random directions", "points of edges", "vertices"];
+/// The number of an aim.
+pub(crate) const EDGES: usize = 1;
+pub(crate) const VERTICES: usize = 2;
 
 pub fn make(effort: Effort) -> Finished {
     let mesh = icosphere(3);
@@ -129,7 +132,7 @@ pub fn make(effort: Effort) -> Finished {
 }
 
 /// Rays from around the middle of a closed mesh.
-pub(super) fn aimed(mesh: &Mesh, aim: usize, count: usize) -> Vec<Ray> {
+pub(crate) fn aimed(mesh: &Mesh, aim: usize, count: usize) -> Vec<Ray> {
     let mut random = Uniform::new(3, aim as u32, 0);
     let mut unit = move || random.number();
     (0..count)
@@ -139,7 +142,7 @@ pub(super) fn aimed(mesh: &Mesh, aim: usize, count: usize) -> Vec<Ray> {
             let [a, b, c] = mesh.corners(triangle);
             let target = match aim {
                 0 => DVec3::new(unit() - 0.5, unit() - 0.5, unit() - 0.5) + 0.1 * c,
-                1 => a + unit() * (b - a),
+                EDGES => a + unit() * (b - a),
                 _ => a,
             };
             Ray::new(origin, target - origin)
@@ -148,13 +151,13 @@ pub(super) fn aimed(mesh: &Mesh, aim: usize, count: usize) -> Vec<Ray> {
 }
 
 /// A wavy sheet with one vertex for each pixel.
-struct Relief {
+pub(crate) struct Relief {
     size: [u32; 2],
     vertices: Vec<DVec3>,
 }
 
 impl Relief {
-    fn new(size: [u32; 2]) -> Self {
+    pub(crate) fn new(size: [u32; 2]) -> Self {
         let [width, height] = size;
         // One row and column more on each side, so that every pixel's vertex is an inner one.
         let vertices = (0..height + 2)
@@ -176,32 +179,41 @@ impl Relief {
 
     /// By one of [`TESTS`].
     fn seen_by(&self, test: usize) -> Picture {
-        let eye = DVec3::new(0.31, 0.17, 4.3);
-        let to_light = DVec3::new(-0.5, 0.6, 0.62).normalize();
         Picture::from_fn(self.size[0], self.size[1], |x, y| {
-            let (column, row) = (x + 1, y + 1);
-            let target = self.vertex(column, row);
-            let ray = Ray::new(eye, target - eye);
-            // The six triangles around the vertex: both halves of the four cells.
-            let cell = |column: u32, row: u32| {
-                let [a, b] = [self.vertex(column, row), self.vertex(column + 1, row)];
-                let [c, d] = [self.vertex(column, row + 1), self.vertex(column + 1, row + 1)];
-                [[a, c, d], [a, d, b]]
-            };
-            let around =
-                [(column - 1, row - 1), (column, row - 1), (column - 1, row), (column, row)];
-            let around: Vec<Corners> =
-                around.into_iter().flat_map(|(column, row)| cell(column, row)).collect();
-            if leaking(test, &around, &[ray]).0 > 0 {
-                return [0; 3];
-            }
-            let (across, down) = (
-                self.vertex(column + 1, row) - self.vertex(column - 1, row),
-                self.vertex(column, row + 1) - self.vertex(column, row - 1),
-            );
-            let n = down.cross(across).normalize();
-            let light = 0.25 + 0.75 * n.dot(to_light).max(0.0);
+            let meets = |corners, ray: &Ray| leaking(test, &[corners], &[*ray]).0 == 0;
+            let light = self.brightness(x, y, meets).unwrap_or(0.0);
             [235.0, 205.0, 160.0].map(|channel| (channel * light) as u8)
         })
+    }
+
+    /// How bright the relief is at a pixel's vertex, up to 1, if the ray aimed there meets it by `test`.
+    pub(crate) fn brightness(
+        &self,
+        x: u32,
+        y: u32,
+        test: impl Fn([DVec3; 3], &Ray) -> bool,
+    ) -> Option<f64> {
+        let eye = DVec3::new(0.31, 0.17, 4.3);
+        let to_light = DVec3::new(-0.5, 0.6, 0.62).normalize();
+        let (column, row) = (x + 1, y + 1);
+        let target = self.vertex(column, row);
+        let ray = Ray::new(eye, target - eye);
+        // The six triangles around the vertex: both halves of the four cells.
+        let cell = |column: u32, row: u32| {
+            let [a, b] = [self.vertex(column, row), self.vertex(column + 1, row)];
+            let [c, d] = [self.vertex(column, row + 1), self.vertex(column + 1, row + 1)];
+            [[a, c, d], [a, d, b]]
+        };
+        let around = [(column - 1, row - 1), (column, row - 1), (column - 1, row), (column, row)];
+        let met = around
+            .into_iter()
+            .flat_map(|(column, row)| cell(column, row))
+            .any(|corners| test(corners, &ray));
+        let (across, down) = (
+            self.vertex(column + 1, row) - self.vertex(column - 1, row),
+            self.vertex(column, row + 1) - self.vertex(column, row - 1),
+        );
+        let n = down.cross(across).normalize();
+        met.then(|| 0.25 + 0.75 * n.dot(to_light).max(0.0))
     }
 }
