@@ -16,9 +16,9 @@ use crate::{Course, Exercise, Failure, Report, State};
 /// No picture of an exercise takes more than a second with right functions.
 const DRAWING: Duration = Duration::from_secs(60);
 
-/// Does what the arguments say: `status`, `check NAME`, `check-all NAME` or `show NAME FILE.png`.
+/// Does what the arguments say: `status NAME`, `check NAME`, `check-all NAME` or `show NAME FILE.png`.
 ///
-/// `status` prints a line for each exercise: its name and its [`State`]. `check` stops at the first failing
+/// `status` prints the name of the exercise's [`State`]. `check` stops at the first failing
 /// check, `check-all` shows every one. The exit code is 0 for a right answer, 1 for any other, 2 for
 /// arguments that are none. Ends the program, since a function that does not come back cannot be stopped
 /// otherwise.
@@ -29,7 +29,7 @@ pub fn run<S: Copy + Send + Sync + 'static>(course: &'static Course<S>, subject:
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let named = |name: &str| course.exercises.iter().find(|exercise| exercise.card.name == name);
     let answer = match arguments[..] {
-        ["status"] => Some(status(course, subject)),
+        ["status", name] => named(name).map(|exercise| status(course, exercise, subject)),
         ["check", name] => named(name).map(|exercise| check(course, exercise, subject, false)),
         ["check-all", name] => named(name).map(|exercise| check(course, exercise, subject, true)),
         ["show", name, file] => named(name).map(|exercise| show(course, exercise, subject, file)),
@@ -43,12 +43,13 @@ pub fn run<S: Copy + Send + Sync + 'static>(course: &'static Course<S>, subject:
     exit(i32::from(!is_right))
 }
 
-fn status<S: Copy + Send>(course: &Course<S>, subject: S) -> (String, bool) {
-    let lines = course.exercises.iter().map(|exercise| {
-        let state = Report::of(exercise, subject, course.reference).state();
-        format!("{} {}\n", exercise.card.name, state.name())
-    });
-    (lines.collect(), true)
+fn status<S: Copy + Send>(
+    course: &Course<S>,
+    exercise: &Exercise<S>,
+    subject: S,
+) -> (String, bool) {
+    let state = Report::of(exercise, subject, course.reference).state();
+    (format!("{}\n", state.name()), state == State::Passing)
 }
 
 impl State {
