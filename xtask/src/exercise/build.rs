@@ -121,16 +121,20 @@ fn missing_function(errors: &[&Value], entry: &Entry, sources: &Path) -> Option<
         let error = errors.iter().find(|error| {
             places(error).any(|(path, line)| path.ends_with("main.rs") && names(line, function))
         })?;
+        let file = shown(&sources.join(entry.card.file));
         let problem = match error["code"]["code"].as_str() {
-            Some("E0432") => "is not there; has it another name now?",
-            Some("E0603" | "E0364") => "can only be used inside its file; begin it with `pub fn`",
-            _ => "takes or returns other types than the exercise asks for",
+            Some("E0432") => {
+                format!("{file} has no function `{function}`; is it called otherwise?")
+            }
+            Some("E0603" | "E0364") => {
+                format!("`{function}` in {file} is private to that file; write `pub` before it")
+            }
+            _ => format!("`{function}` in {file} takes or returns other types than it should"),
         };
         let message = format!(
-            "{} does not fit: `{function}` in {} {problem}\nIt should begin with:\n\n    {}",
+            "{}: {problem}\nIt begins with:\n\n    {}",
             entry.title(),
-            shown(&sources.join(entry.card.file)),
-            entry.signature(function),
+            entry.signature(function)
         );
         Some(Broken { exercise: Some(entry.card.name), message })
     })
@@ -159,6 +163,8 @@ pub struct Answer {
     pub text: String,
     /// Whether it ended with success.
     pub is_right: bool,
+    /// Whether it ended otherwise than by itself, and says why instead of a report.
+    pub is_crash: bool,
 }
 
 /// Runs a chapter's program.
@@ -177,12 +183,13 @@ pub fn ask(program: &Path, arguments: &[&str]) -> Result<Answer> {
         },
     };
     let is_right = ended.status.is_some_and(|status| status.success());
+    let is_crash = trouble.is_some();
     let text = match trouble {
         Some(trouble) => format!("{}{trouble}\n", ended.out),
-        // What `dbg!` shows.
+        // What `dbg!` shows comes first.
         None => ended.err + &ended.out,
     };
-    Ok(Answer { text, is_right })
+    Ok(Answer { text, is_right, is_crash })
 }
 
 /// Why a program ended otherwise than by itself.

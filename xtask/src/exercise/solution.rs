@@ -27,7 +27,7 @@ pub fn item<'a>(source: &'a str, start: &str) -> Option<Item<'a>> {
     };
     let top = first - lines[..first].iter().rev().take_while(belongs).count();
     let ends = |line: &&str| indent(line) == own && line.ends_with(['}', ';']);
-    let last = first + lines[first..].iter().position(|line| ends(&line))?;
+    let last = first + lines[first..].iter().position(ends)?;
     let offset = |line: &str| line.as_ptr() as usize - source.as_ptr() as usize;
     let text = &source[offset(lines[top])..offset(lines[last]) + lines[last].len()];
     Some(Item { line: first + 1, text })

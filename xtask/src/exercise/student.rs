@@ -3,9 +3,9 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 
-use super::build::{Broken, ask, build, shown};
+use super::build::{Answer, Broken, ask, build, shown};
 use super::catalogue::{Chapter, Entry, entries};
 use super::workspace::{Started, Workspace};
 
@@ -185,9 +185,10 @@ impl Student {
         self.require_started(entry)?;
         let figure = self.workspace.figure(entry);
         if let Some(folder) = figure.parent() {
-            std::fs::create_dir_all(folder)?;
+            std::fs::create_dir_all(folder)
+                .with_context(|| format!("cannot make the folder {}", folder.display()))?;
         }
-        self.ask(entry, &["show", entry.card.name, &figure.to_string_lossy()])
+        self.ask(entry, &["show", entry.card.name, &shown(&figure)])
     }
 
     /// What the chapter's program says, or why there is none.
@@ -195,8 +196,11 @@ impl Student {
         let name = entry.card.name;
         Ok(match self.program(entry.chapter)? {
             Ok(program) => {
-                let answer = ask(program, arguments)?;
-                Checked { text: answer.text, passes: answer.is_right }
+                let Answer { mut text, is_right, is_crash } = ask(program, arguments)?;
+                if is_crash {
+                    text = format!("{}: {}\n{text}", entry.title(), entry.card.title);
+                }
+                Checked { text, passes: is_right }
             }
             Err(broken) => {
                 let own = broken.iter().find(|broken| broken.exercise == Some(name));
@@ -227,7 +231,7 @@ impl Student {
             ("Lesson", entry.lesson()),
             ("Predict", card.predict.to_owned()),
             ("Write", format!("{} in {file}", card.functions.join(" and "))),
-            ("Then", format!("cargo xtask exercise check {}", card.name)),
+            ("Then", format!("cargo xtask exercise check {0}, or watch {0}", card.name)),
         ];
         for (word, content) in rows {
             let _ = writeln!(text, "  {word:<8} {content}");

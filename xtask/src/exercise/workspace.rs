@@ -184,13 +184,21 @@ impl Workspace {
         if is_current { Ok(()) } else { put(&own, &course) }
     }
 
+    /// Cargo's settings: where to compile to, and `cargo xtask` from inside the folder as well. Cargo adds up
+    /// an alias that is an array with the one outside, so it is a string, which cannot name a path with
+    /// spaces in it.
     fn config(&self) -> String {
-        let xtask = quoted(&root().join("xtask").join("Cargo.toml"));
-        let (own, course) = (quoted(&self.target()), quoted(&course_target()));
-        format!(
-            "# {GENERATED}\n[build]\ntarget-dir = {own}\n\n[alias]\n\
-             xtask = [\"run\", \"--release\", \"--quiet\", \"--manifest-path\", {xtask}, \"--target-dir\", {course}, \"--\"]\n"
-        )
+        let target = quoted(&self.target());
+        let mut text = format!("# {GENERATED}\n[build]\ntarget-dir = {target}\n");
+        let manifest = root().join("xtask").join("Cargo.toml").display().to_string();
+        let target = course_target().display().to_string();
+        if !format!("{manifest}{target}").contains(char::is_whitespace) {
+            let command = format!(
+                "run --release --quiet --manifest-path {manifest} --target-dir {target} --"
+            );
+            let _ = writeln!(text, "\n[alias]\nxtask = {}", quoted(Path::new(&command)));
+        }
+        text
     }
 
     fn package_manifest(&self, chapter: Chapter, edition: &str) -> String {
