@@ -20,7 +20,7 @@ use crate::progress::INTERRUPTED;
 /// The program stops endless functions itself; this is for what it cannot stop.
 const LIMIT: Duration = Duration::from_secs(90);
 /// How long to compile without a word.
-const PATIENCE: Duration = Duration::from_secs(3);
+const PATIENCE: Duration = Duration::from_secs(5);
 /// What is kept of an output: its end, in bytes. A loop may print for as long as it runs.
 const KEPT: usize = 64 << 10;
 
@@ -197,8 +197,9 @@ fn death(err: &str, status: ExitStatus) -> String {
     let Some(at) = err.find("has overflowed its stack") else {
         return format!("{err}Your program ended unexpectedly ({status}).");
     };
-    // The thread has the check's name.
+    // The thread has the check's name; those that draw have none.
     let check = err[..at].rsplit("thread '").next().and_then(|rest| rest.split('\'').next());
+    let check = check.filter(|name| !name.starts_with('<'));
     format!(
         "  ✗ {}\n      your function called itself until the stack was full: does the recursion end?",
         check.unwrap_or("the picture")
@@ -244,7 +245,7 @@ fn wait(child: &mut Child, start: Instant, limit: Option<Duration>) -> Result<Op
         if limit.is_none() && !is_announced && start.elapsed() > PATIENCE {
             is_announced = true;
             eprintln!(
-                "Compiling the course for your folder; the first time takes a minute or two …"
+                "Compiling … The first time, and when the course has changed, this takes minutes."
             );
         }
         thread::sleep(Duration::from_millis(5));
