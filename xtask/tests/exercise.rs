@@ -53,11 +53,14 @@ impl Student {
         text(&output.stdout)
     }
 
-    /// What a command that fails prints.
+    /// What a command that fails prints, however long it takes.
     fn failed(&self, arguments: &[&str]) -> String {
         let output = self.output(arguments);
         assert_eq!(output.status.code(), Some(1), "{arguments:?}: {}", text(&output.stderr));
-        text(&output.stdout) + &text(&output.stderr)
+        let said = text(&output.stdout) + &text(&output.stderr);
+        said.lines()
+            .filter(|line| !line.starts_with("Compiling …"))
+            .fold(String::new(), |text, line| text + line + "\n")
     }
 
     /// Answers the exercise with one expression instead of `todo!()`.
@@ -93,7 +96,14 @@ fn before_anything_is_begun_there_is_no_folder() {
 #[test]
 fn a_start_says_what_to_do_and_never_overwrites() {
     let student = Student::new();
-    assert_snapshot!(student.accepted(&["start", "6"]), @"");
+    assert_snapshot!(student.accepted(&["start", "6"]), @r"
+    E1.6 reflected-ray: The mirror ray (about 10 minutes)
+      Slide    « Reflets spéculaires : calcul du rayon réfléchi »
+      Lesson   chapters/1-whitted/README.md, « Reflets spéculaires »
+      Predict  the picture colours a ball by the direction in which it mirrors the eye's ray: what is the colour in its middle, and what at its rim?
+      Write    reflected_ray in work/chapter-1/src/e06_reflected_ray.rs
+      Then     cargo xtask exercise check reflected-ray, or watch reflected-ray
+    ");
     assert_eq!(student.read(FILE), stub());
     for edited in ["mine", ""] {
         student.write(FILE, edited);
@@ -192,8 +202,14 @@ fn unknown_exercises_and_hints_are_refused() {
 #[test]
 fn there_are_three_hints_and_an_answer() {
     let student = Student::new();
-    assert_snapshot!(student.accepted(&["hint", "6"]), @"");
-    assert_snapshot!(student.accepted(&["hint", "6", "-n", "3"]), @"");
+    assert_snapshot!(student.accepted(&["hint", "6"]), @r"
+    E1.6 reflected-ray, hint 1 of 3: Split V into a part along N and a part along the surface. A mirror turns one of them around.
+    More: cargo xtask exercise hint reflected-ray -n 2
+    ");
+    assert_snapshot!(student.accepted(&["hint", "6", "-n", "3"]), @r"
+    E1.6 reflected-ray, hint 3 of 3: `n.dot(incident)` is N·V; take twice that many `n` away from `incident`.
+    The course's own answer: cargo xtask exercise solution reflected-ray
+    ");
     let solution = student.accepted(&["solution", "6"]);
     let mut lines = solution.lines();
     assert_eq!(lines.next(), Some("E1.6 reflected-ray: you have not begun this one"));
@@ -214,11 +230,23 @@ fn every_proof_of_the_checks_holds() {
 fn a_student_goes_wrong_in_many_ways_and_then_right() {
     let student = Student::new();
     student.accepted(&["start", "6"]);
-    assert_snapshot!(student.failed(&["check"]), @"");
+    assert_snapshot!(student.failed(&["check"]), @r"
+    E1.6 reflected-ray: The mirror ray
+      ✗ 45 degrees onto a floor
+          still to be written: replace `todo!()` in e06_reflected_ray.rs
+    ");
     assert!(student.accepted(&["list"]).contains("started"));
 
     student.answer("incident - n.dot(incident) * n");
-    assert_snapshot!(student.failed(&["check", "6"]), @"");
+    assert_snapshot!(student.failed(&["check", "6"]), @r"
+    E1.6 reflected-ray: The mirror ray
+      ✗ 45 degrees onto a floor
+          case    incident (0.6, -0.8, 0) (towards the surface), N (0, 1, 0)
+          got     (0.6, 0, 0)
+          wanted  (0.6, 0.8, 0)
+
+    This looks like a known slip: the factor 2 is missing: the vector is projected onto the surface, not mirrored
+    ");
     assert!(student.accepted(&["list"]).contains("wrong"));
     assert!(student.failed(&["check", "--all"]).contains("✗ any plane, by hand"));
 
@@ -244,14 +272,28 @@ fn a_student_goes_wrong_in_many_ways_and_then_right() {
     }
 
     student.answer("reflected_ray(incident, n) * 2.0");
-    assert_snapshot!(student.failed(&["check"]), @"");
+    assert_snapshot!(student.failed(&["check"]), @r"
+    E1.6 reflected-ray: The mirror ray
+      ✗ 45 degrees onto a floor
+          your function called itself until the stack was full: does the recursion end?
+    ");
 
     student.answer("let none: [DVec3; 0] = []; none[incident.length() as usize]");
     let said = student.failed(&["check"]);
     assert!(said.contains("your function panicked in line 12 of e06_reflected_ray.rs: "), "{said}");
 
     student.answer("incident - 2.0 * n.dot(incident) * n");
-    assert_snapshot!(student.accepted(&["check"]), @"");
+    assert_snapshot!(student.accepted(&["check"]), @r"
+    E1.6 reflected-ray: The mirror ray
+      ✓ 45 degrees onto a floor
+      ✓ any plane, by hand
+      ✓ the normal may stand on either side
+
+    Right. See it: cargo xtask exercise show reflected-ray
+    Then: turn N around in your function: why does the picture stay the same?
+    The course's own answer: cargo xtask exercise solution reflected-ray
+    The next exercise: cargo xtask exercise next
+    ");
     assert!(student.accepted(&["list"]).contains("passing"));
     let shown = student.accepted(&["show", "6"]);
     assert!(

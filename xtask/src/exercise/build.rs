@@ -274,3 +274,101 @@ pub fn shown(path: &Path) -> String {
     let here = env::current_dir().unwrap_or_default();
     path.strip_prefix(here).unwrap_or(path).display().to_string()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::catalogue::find;
+    use super::*;
+
+    /// An error as cargo passes it on.
+    fn error(code: &str, file: &str, line: &str) -> Value {
+        serde_json::json!({ "message": {
+            "level": "error",
+            "code": { "code": code },
+            "rendered": format!("error[{code}] --> {file}:1\n"),
+            "spans": [{ "is_primary": true, "file_name": file, "text": [{ "text": line }], "expansion": null }],
+        }})
+    }
+
+    /// Two exercises of one chapter, the second with a function g.
+    fn two() -> [Entry; 2] {
+        let first = find("reflected-ray").unwrap();
+        let mut second = first;
+        second.card.id = "E1.99";
+        second.card.name = "second";
+        second.card.file = "e99_second.rs";
+        second.card.functions = &["g"];
+        second.card.stub = "pub fn g(x: f64) -> f64 {\n    todo!()\n}\n";
+        [first, second]
+    }
+
+    fn explained(errors: &[Value]) -> Vec<Broken> {
+        let two = two();
+        explain(errors, &two, two[0].chapter, Path::new("w/chapter-1/src"))
+    }
+
+    #[test]
+    fn errors_are_told_by_file_and_what_follows_from_them_is_left_out() {
+        let errors = [
+            error("E0432", "chapter-1/src/main.rs", "    pub use super::e99_second::g;"),
+            error("E0308", "chapter-1/src/e99_second.rs", "    1"),
+        ];
+        let broken = explained(&errors);
+        assert_eq!(broken.len(), 1);
+        assert_eq!(broken[0].exercise, Some("second"));
+        let wanted = "E1.99 second does not compile: w/chapter-1/src/e99_second.rs\n\n\
+                      error[E0308] --> w/chapter-1/src/e99_second.rs:1";
+        assert_eq!(broken[0].message, wanted);
+    }
+
+    #[test]
+    fn an_error_inside_a_macro_belongs_to_the_file_that_uses_it() {
+        let mut inside = error("E0308", "library/macros.rs", "");
+        let outer = error("E0308", "chapter-1/src/e99_second.rs", "    m!()");
+        inside["message"]["spans"][0]["expansion"] =
+            serde_json::json!({ "span": outer["message"]["spans"][0] });
+        assert_eq!(explained(&[inside])[0].exercise, Some("second"));
+    }
+
+    #[test]
+    fn a_function_that_does_not_fit_is_named_with_its_signature() {
+        for (code, line, says) in [
+            (
+                "E0432",
+                "    pub use super::e99_second::g;",
+                "has no function `g`; is it called otherwise?",
+            ),
+            (
+                "E0603",
+                "    pub use super::e99_second::g;",
+                "is private to that file; write `pub` before it",
+            ),
+            ("E0308", "        g: yours::g,", "takes or returns other types than it should"),
+        ] {
+            let broken = explained(&[error(code, "chapter-1/src/main.rs", line)]);
+            assert_eq!(broken[0].exercise, Some("second"));
+            let end = format!("{says}\nIt begins with:\n\n    pub fn g(x: f64) -> f64");
+            assert!(broken[0].message.ends_with(&end), "{}", broken[0].message);
+        }
+    }
+
+    #[test]
+    fn an_error_elsewhere_is_shown_whole() {
+        let broken = explained(&[error("E0308", "elsewhere.rs", "")]);
+        assert_eq!(broken[0].exercise, None);
+        assert!(broken[0].message.contains("error[E0308] --> elsewhere.rs:1"));
+        assert!(explained(&[]).is_empty());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_process_is_stopped_and_the_end_of_its_words_kept() {
+        let script = |text: &str, limit, kept| {
+            run(Command::new("sh").args(["-c", text]), limit, kept).unwrap()
+        };
+        let endless = script("echo a; exec sleep 600", Some(Duration::from_millis(300)), KEPT);
+        assert_eq!((endless.status, &*endless.out), (None, "a\n"));
+        assert_eq!(script("printf 123456789", None, 3).out, "[…]\n789");
+        assert_eq!(script("printf 123 >&2", None, 3).err, "123");
+    }
+}

@@ -90,6 +90,13 @@ mod tests {
                 proof("twice", "near", [true, true], Some("halved")),
             ],
         };
-        assert_snapshot!(table(&verified), @"");
+        assert_snapshot!(table(&verified), @r"
+        E1.1 a
+           1 near
+           2 far  FAILS: the right answer does not pass
+           ● ○  halved
+           ○ ·  doubled  FAILS: « far » does not catch it
+           ● ○  twice  FAILS: looks like « halved »
+        ");
     }
 }
