@@ -89,7 +89,13 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         Action::Next => start(&Choice { id: None })?,
         Action::Check { choice, all } => {
             let chosen = choice.id.as_deref().map(find).transpose()?;
-            return Ok(report(&Student::open()?.check(chosen, *all)?));
+            let mut student = Student::open()?;
+            let checked = student.check(chosen, *all)?;
+            let code = report(&checked);
+            if checked.passes {
+                say_next(student.first_not_passing()?.as_ref());
+            }
+            return Ok(code);
         }
         Action::Watch(choice) => {
             watch::watch(choice.id.as_deref().map(find).transpose()?)?;
@@ -110,6 +116,14 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 fn report(checked: &Checked) -> ExitCode {
     say!("{}", checked.text.trim_end());
     if checked.passes { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+/// Says what to do after an exercise has passed.
+fn say_next(next: Option<&Entry>) {
+    match next {
+        Some(next) => say!("Next: {}, cargo xtask exercise start {}", next.title(), next.card.name),
+        None => say!("All exercises pass."),
+    }
 }
 
 /// The exercise that is meant; if all pass, says so and returns none.

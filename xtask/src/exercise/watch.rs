@@ -11,6 +11,7 @@ use std::time::{Duration, SystemTime};
 use anyhow::Result;
 
 use super::catalogue::Entry;
+use super::say_next;
 use super::student::Student;
 use super::workspace::Workspace;
 use crate::progress::{self, INTERRUPTED};
@@ -34,13 +35,10 @@ pub fn watch(mut entry: Option<Entry>) -> Result<()> {
         let checked = result?;
         say!("{}", checked.text.trim_end());
         let next = if checked.passes { student.first_not_passing()? } else { None };
-        match &next {
-            Some(next) if enter.is_some() => say!("\nEnter starts the next: {}", next.title()),
-            Some(next) => {
-                say!("\nNext: cargo xtask exercise start {}", next.card.name);
-            }
-            None if checked.passes => say!("\nAll exercises pass."),
-            None => {}
+        if let (Some(next), true) = (&next, enter.is_some()) {
+            say!("Enter starts the next: {}", next.title());
+        } else if checked.passes {
+            say_next(next.as_ref());
         }
         say!("\n── waiting for a change; Ctrl-C ends ──");
         while !is_interrupted() && files(student.workspace()) == seen {
