@@ -473,7 +473,7 @@ fn an_interrupt_leaves_no_file() {
 #[test]
 fn every_command_has_help() {
     let help = |arguments: &[&str]| text(&accepted(&folder(&[]), arguments).stdout);
-    for command in ["figures", "render", "compare", "eq", "tidy"] {
+    for command in ["figures", "render", "compare", "eq", "exercise", "tidy"] {
         assert_snapshot!(format!("help_{command}"), help(&[command, "--help"]));
     }
     assert_snapshot!("help", help(&["--help"]));

@@ -1,9 +1,10 @@
 //! The program of a student's workspace: their functions against the checks.
 
 use std::fmt::Write;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
+use std::path::Path;
 use std::process::exit;
-use std::sync::mpsc;
+use std::sync::{Mutex, mpsc};
 use std::thread;
 use std::time::Duration;
 
@@ -11,25 +12,49 @@ use lancer_core::image::write_atomically;
 
 use crate::judge::Outcome;
 use crate::show::compare;
-use crate::{Course, Exercise, Failure, Report, State};
+use crate::{Card, Course, Exercise, Failure, Report, State};
 
 /// No picture of an exercise takes more than a second with right functions.
 const DRAWING: Duration = Duration::from_secs(60);
 
-/// Does what the arguments say: `status`, `check NAME`, `check-all NAME` or `show NAME FILE.png`.
+/// What panicked, and where: the file and the line. A hook cannot hand that on in any other way. It is kept
+/// apart from the outcomes, which are compared with those of slips that panic elsewhere.
+static PANICS: Mutex<Vec<(Failure, Place)>> = Mutex::new(Vec::new());
+
+/// A file's name and a line in it.
+#[derive(Clone)]
+struct Place {
+    file: String,
+    line: u32,
+}
+
+fn remember(panic: &PanicHookInfo<'_>) {
+    let (Some(location), Ok(mut panics)) = (panic.location(), PANICS.lock()) else { return };
+    let name = Path::new(location.file()).file_name().unwrap_or_default();
+    let place = Place { file: name.to_string_lossy().into_owned(), line: location.line() };
+    panics.push((Failure::of_panic(panic.payload()), place));
+}
+
+/// Where the first panic of this kind was. The student's functions run before any slip does.
+fn place_of(failure: &Failure) -> Option<Place> {
+    let panics = PANICS.lock().ok()?;
+    panics.iter().find(|(known, _)| known == failure).map(|(_, place)| place.clone())
+}
+
+/// Does what the arguments say: `status NAME`, `check NAME`, `check-all NAME` or `show NAME FILE.png`.
 ///
-/// `status` prints a line for each exercise: its name and its [`State`]. `check` stops at the first failing
+/// `status` prints the name of the exercise's [`State`]. `check` stops at the first failing
 /// check, `check-all` shows every one. The exit code is 0 for a right answer, 1 for any other, 2 for
 /// arguments that are none. Ends the program, since a function that does not come back cannot be stopped
 /// otherwise.
 pub fn run<S: Copy + Send + Sync + 'static>(course: &'static Course<S>, subject: S) -> ! {
     // What a panic says goes into the report, not before it.
-    std::panic::set_hook(Box::new(|_| ()));
+    std::panic::set_hook(Box::new(remember));
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let named = |name: &str| course.exercises.iter().find(|exercise| exercise.card.name == name);
     let answer = match arguments[..] {
-        ["status"] => Some(status(course, subject)),
+        ["status", name] => named(name).map(|exercise| status(course, exercise, subject)),
         ["check", name] => named(name).map(|exercise| check(course, exercise, subject, false)),
         ["check-all", name] => named(name).map(|exercise| check(course, exercise, subject, true)),
         ["show", name, file] => named(name).map(|exercise| show(course, exercise, subject, file)),
@@ -43,12 +68,13 @@ pub fn run<S: Copy + Send + Sync + 'static>(course: &'static Course<S>, subject:
     exit(i32::from(!is_right))
 }
 
-fn status<S: Copy + Send>(course: &Course<S>, subject: S) -> (String, bool) {
-    let lines = course.exercises.iter().map(|exercise| {
-        let state = Report::of(exercise, subject, course.reference).state();
-        format!("{} {}\n", exercise.card.name, state.name())
-    });
-    (lines.collect(), true)
+fn status<S: Copy + Send>(
+    course: &Course<S>,
+    exercise: &Exercise<S>,
+    subject: S,
+) -> (String, bool) {
+    let state = Report::of(exercise, subject, course.reference).state();
+    (format!("{}\n", state.name()), state == State::Passing)
 }
 
 impl State {
@@ -70,7 +96,7 @@ fn check<S: Copy + Send>(
 ) -> (String, bool) {
     let card = exercise.card;
     let report = Report::of(exercise, subject, course.reference);
-    let mut text = format!("{} {}: {}\n", card.id, card.name, card.title);
+    let mut text = title(&card);
     for (name, outcome) in &report.outcomes {
         match outcome {
             Outcome::Passed => line(&mut text, format_args!("  ✓ {name}")),
@@ -101,6 +127,10 @@ fn check<S: Copy + Send>(
     (text, report.state() == State::Passing)
 }
 
+fn title(card: &Card) -> String {
+    format!("{} {}: {}\n", card.id, card.name, card.title)
+}
+
 fn describe(text: &mut String, file: &str, failure: &Failure) {
     match failure {
         Failure::Wrong(mismatch) => {
@@ -109,10 +139,14 @@ fn describe(text: &mut String, file: &str, failure: &Failure) {
             }
         }
         Failure::Unwritten => {
+            // It may be another exercise's that this one calls.
+            let file = place_of(failure).map_or(file.to_owned(), |place| place.file);
             line(text, format_args!("      still to be written: replace `todo!()` in {file}"));
         }
         Failure::Panicked(message) => {
-            line(text, format_args!("      your function panicked: {message}"));
+            let place = place_of(failure)
+                .map_or(String::new(), |Place { file, line }| format!(" in line {line} of {file}"));
+            line(text, format_args!("      your function panicked{place}: {message}"));
         }
         Failure::Endless => {
             let endless = "your function did not come back within 10 seconds: does its loop end?";
@@ -151,7 +185,7 @@ fn show<S: Copy + Send + Sync + 'static>(
         let _ = sender.send(drawn);
     };
     thread::spawn(drawing);
-    let mut text = String::new();
+    let mut text = title(&exercise.card);
     match receiver.recv_timeout(DRAWING) {
         Ok(Ok((claim, png, is_right))) => match write_atomically(file, &png) {
             Ok(()) => {
