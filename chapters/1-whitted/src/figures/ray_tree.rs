@@ -83,7 +83,7 @@ pub fn make(_: Effort) -> Finished {
     let plate = Plate::new("1.6", "The ray tree of one pixel", claim, holds)
         .panel(
             Row::new()
-                .panel(1.0, Montage::new().tile(Tile::new("The pixel", marked(shown(&picture)))))
+                .panel(1.0, Montage::new().tile(Tile::new("The pixel", shown(&picture).marked(PIXEL.0, PIXEL.1))))
                 .panel(1.55, from_above(&scene, &tree)),
         )
         .panel(drawn(&scene, &tree, 0))
@@ -173,17 +173,6 @@ fn drawn(scene: &Scene, tree: &RayTree, k: usize) -> Tree {
         let share = tree.nodes[child].call.weight / node.call.weight;
         let edge = format!("{} {}", kind(tree.nodes[child].call.kind).0, number(share));
         drawing.child(edge, drawn(scene, tree, child))
-    })
-}
-
-/// The picture with its pixel in a frame.
-fn marked(picture: Picture) -> Picture {
-    let around = |x: u32, y: u32| {
-        let (dx, dy) = (x.abs_diff(PIXEL.0), y.abs_diff(PIXEL.1));
-        (6..=7).contains(&dx.max(dy)) || (dx.max(dy) > 7 && dx.max(dy) < 22 && dx.min(dy) == 0)
-    };
-    Picture::from_fn(picture.width(), picture.height(), |x, y| {
-        if around(x, y) { [20, 20, 20] } else { picture.get(x, y) }
     })
 }
 
