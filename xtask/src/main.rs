@@ -9,6 +9,7 @@ macro_rules! say {
     }};
 }
 
+mod arguments;
 mod compare;
 mod eq;
 mod figures;
@@ -18,6 +19,7 @@ mod progress;
 mod render;
 mod repository;
 mod scene;
+mod step;
 mod tidy;
 
 use std::process::ExitCode;
@@ -36,6 +38,7 @@ struct Cli {
 enum Command {
     Figures(figures::Args),
     Render(render::Args),
+    Step(step::Args),
     Compare(compare::Args),
     Eq(eq::Args),
     /// Checks the rules of the house: labels, dependencies, documentation, links, sizes.
@@ -46,6 +49,7 @@ fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Figures(args) => figures::run(&args),
         Command::Render(args) => render::run(&args),
+        Command::Step(args) => step::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Eq(args) => eq::run(&args),
         Command::Tidy => tidy::run(),

@@ -58,7 +58,7 @@ pub const FIGURES: &[Figure] = &[
 ];
 
 /// The picture as a display shows it.
-fn shown(image: &Image) -> Picture {
+pub(crate) fn shown(image: &Image) -> Picture {
     let ImageSize { width, height, .. } = image.size();
     Picture::new(width, height, image.to_srgb8(0.0))
 }

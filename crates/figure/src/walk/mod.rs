@@ -99,6 +99,20 @@ impl Step {
     }
 }
 
+impl Backdrop {
+    /// The corners `low` and `high`, moved apart to the proportions of the drawing: all that it shows.
+    pub fn frame(low: Point, high: Point) -> [Point; 2] {
+        let [width, height] = page::DRAWING;
+        let unit = ((high[0] - low[0]) / width).max((high[1] - low[1]) / height);
+        let corner = |side: f64| {
+            let along =
+                |axis: usize, size: f64| (low[axis] + high[axis] + side * unit * size) / 2.0;
+            [along(0, width), along(1, height)]
+        };
+        [corner(-1.0), corner(1.0)]
+    }
+}
+
 impl Walk {
     /// All steps as text, indented by their depth.
     pub fn to_text(&self) -> String {
@@ -148,6 +162,19 @@ pub(crate) mod tests {
             calls: Tree::new("1", INK).child("<edge>", Tree::new("2", INK)),
             steps,
         }
+    }
+
+    #[test]
+    fn a_frame_has_the_proportions_of_the_drawing() {
+        let [width, height] = page::DRAWING;
+        assert_eq!(
+            Backdrop::frame([0.0, 0.0], [0.0, height]),
+            [[-width / 2.0, 0.0], [width / 2.0, height]]
+        );
+        assert_eq!(
+            Backdrop::frame([-width, 1.0], [width, 1.0]),
+            [[-width, 1.0 - height], [width, 1.0 + height]]
+        );
     }
 
     #[test]

@@ -17,7 +17,7 @@ const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
 
 /// The size of the drawing, in canvas px.
-const DRAWING: [f64; 2] = [860.0, 560.0];
+pub(super) const DRAWING: [f64; 2] = [860.0, 560.0];
 /// The room around the tree.
 const MARGIN: f64 = 16.0;
 /// The height of the bar below a node that shows the colour of its answer.
@@ -155,7 +155,6 @@ fn css(color: Color) -> String {
 #[cfg(test)]
 mod tests {
     use super::super::tests::sample;
-    use super::*;
 
     #[test]
     fn everything_is_escaped_and_nothing_comes_from_elsewhere() {
