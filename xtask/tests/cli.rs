@@ -364,6 +364,59 @@ fn pictures_that_cannot_be_compared_are_refused() {
 }
 
 #[test]
+fn steps_that_cannot_be_walked_are_refused() {
+    let folder = folder(&[]);
+    fs::create_dir(folder.path().join("folder.html")).unwrap();
+    let cases: [&[&str]; 11] = [
+        &["--pixel=8,0"],
+        &["--pixel=0,8"],
+        &["--pixel=-1,0"],
+        &["--pixel=1"],
+        &["--pixel=1,2,3"],
+        &["--pixel=1,1", "--depth=17"],
+        &["--pixel=1,1", "--scene=romo"],
+        &["--pixel=1,1", "--scene=gone.toml"],
+        &["--pixel=1,1", "--out=old.png"],
+        &["--pixel=1,1", "--out=missing/new.html"],
+        &["--pixel=1,1", "--out=folder.html"],
+    ];
+    let line = |case: &[&'static str]| {
+        let mut line = vec!["step", "whitted", "--size=8x8"];
+        line.extend(case);
+        if !case.iter().any(|option| option.starts_with("--scene")) {
+            line.push("--scene=whitted");
+        }
+        line
+    };
+    assert_snapshot!(refusals(&folder, cases.map(line)), @"");
+    let unknown = ["step", "witted", "--scene=whitted", "--pixel=1,1"];
+    assert_snapshot!(refusal(&folder, &unknown), @"");
+}
+
+#[test]
+fn a_walk_is_a_text_or_a_page() {
+    let model = CORNER.replacen("f 1", "mtllib m.mtl\nusemtl <script>alert(1)</script>\nf 1", 1);
+    let library = b"newmtl <script>alert(1)</script>\nKd 0.5 0.5 0.5\nillum 3\nKs 0.5 0.5 0.5\n";
+    let folder = folder(&[("corner.obj", model.as_bytes()), ("m.mtl", library)]);
+    let line = ["step", "whitted", "--scene=corner.obj", "--pixel=16,16", "--size=32x32"];
+    let walked = accepted(&folder, &line);
+    assert_eq!(text(&walked.stderr), "");
+    let walked = text(&walked.stdout);
+    assert!(walked.contains("call 1 meets <script>alert(1)</script> at t = "), "{walked}");
+    let page = |name: &str| {
+        let out = format!("--out={name}");
+        let output = accepted(&folder, &[&line[..], &[&out]].concat());
+        assert!(text(&output.stdout).starts_with(&format!("page    {name}   ")));
+        text(&fs::read(folder.path().join(name)).unwrap())
+    };
+    let first = page("a.html");
+    assert_eq!(first, page("b.HTML"));
+    assert_eq!(first, page("a.html"), "an old page is replaced");
+    assert!(first.contains("call 1 meets &lt;script&gt;alert(1)&lt;/script&gt; at t = "));
+    assert!(!first.contains("<script>alert") && !first.contains("http"));
+}
+
+#[test]
 fn incomplete_and_unknown_commands_are_refused() {
     let lines = [
         vec!["rendr"],
@@ -473,7 +526,7 @@ fn an_interrupt_leaves_no_file() {
 #[test]
 fn every_command_has_help() {
     let help = |arguments: &[&str]| text(&accepted(&folder(&[]), arguments).stdout);
-    for command in ["figures", "render", "compare", "eq", "tidy"] {
+    for command in ["figures", "render", "step", "compare", "eq", "tidy"] {
         assert_snapshot!(format!("help_{command}"), help(&[command, "--help"]));
     }
     assert_snapshot!("help", help(&["--help"]));

@@ -86,7 +86,7 @@ pub fn walk(request: &Request<'_>) -> Walk {
     Walk {
         title: format!("LR for pixel ({x}, {y}) of {}", printable(request.name)),
         subtitle: format!(
-            "{size} pixels, depth at most {}, weight at least {}: {} calls, {} of them traced, {shadows} shadow rays",
+            "{size} pixels, depth at most {}, weight at least {}; calls {}, traced {}, shadow rays {shadows}",
             settings.max_depth,
             settings.min_weight.shown(),
             tree.nodes.len(),
@@ -161,10 +161,10 @@ impl Walker<'_> {
                 debug_assert_eq!(terms.sum(), local, "the terms are those of the method");
                 let (view, origin, color) =
                     (self.view, node.call.ray.origin, kind(node.call.kind).1);
-                let end = origin + view.short() * node.call.ray.direction;
+                let direction = node.call.ray.direction;
                 let begins = self.begin(k, node).points_out(move |pen| {
                     pen.dot(view.side.flat(origin), 5.0, color);
-                    view.arrow(pen, origin, end, Stroke::new(color, 4.0));
+                    view.direction(pen, origin, direction, "", Stroke::new(color, 4.0));
                 });
                 self.steps.push(begins);
                 self.steps.push(self.hit(k, node, &hit, &surface, &terms));
@@ -182,8 +182,8 @@ impl Walker<'_> {
         let call = &node.call;
         let (from, sense) = match call.kind {
             RayKind::Primary => ("the eye", "from the eye through the pixel"),
-            RayKind::Mirror => ("just off the surface", "away from the surface, R of the mirror"),
-            RayKind::Refracted => ("just behind the surface", "away from the surface, T behind it"),
+            RayKind::Mirror => ("just off the surface", "away from the surface"),
+            RayKind::Refracted => ("just behind the surface", "away from the surface"),
         };
         let (kind, depth, weight) = (kind(call.kind).0, call.depth, call.weight.shown());
         self.step(k, format!("begins: {kind} ray, depth {depth}, weight {weight}"))
@@ -296,7 +296,7 @@ impl Walker<'_> {
             .line(format!("+ emission {}", terms.emission.shown()));
         let step = if terms.lamps.is_empty() { step.line("  the scene has no lamp") } else { step };
         lamps.fold(step, |step, (i, lamp)| {
-            step.line(format!("+ lamp {:<4} {}", i + 1, lamp.value().shown()))
+            step.line(format!("+ lamp {:<3} {}", i + 1, lamp.value().shown()))
         })
     }
 
@@ -360,7 +360,8 @@ impl Walker<'_> {
             (format!("k_s = {}", spawned.k_s.shown()), lines)
         };
         let (view, from, color) = (self.view, surface.position, kind(call.kind).1);
-        let to = from + view.short() * call.ray.direction;
+        let direction = call.ray.direction;
+        let letter = if call.kind == RayKind::Refracted { "T" } else { "R" };
         let step =
             self.step(k, format!("spawns call {}: {} ray, {share}", child + 1, kind(call.kind).0));
         let step = lines.into_iter().fold(step, Step::line);
@@ -372,12 +373,12 @@ impl Walker<'_> {
         ))
         .points_out(move |pen| {
             normal(view, pen, from, n);
-            view.arrow(pen, from, to, Stroke::new(color, 4.0));
+            view.direction(pen, from, direction, letter, Stroke::new(color, 4.0));
         })
     }
 }
 
 /// N at a point of a surface.
 fn normal(view: View, pen: &mut Pen<'_>, at: DVec3, n: DVec3) {
-    view.arrow(pen, at, at + view.short() * n, Stroke::new(INK, 1.6));
+    view.direction(pen, at, n, "N", Stroke::new(INK, 1.6));
 }

@@ -82,7 +82,8 @@ pub struct View {
 }
 
 impl View {
-    /// The view of a pixel's rays: from the side from which they look longest, all that they meet in sight.
+    /// The view of a pixel's rays, from the side from which they look longest: what they meet is in sight,
+    /// and all of the scene unless it is large.
     pub fn of_rays(scene: &Scene, tree: &RayTree) -> Self {
         let root = &tree.nodes[0];
         let mut paths = Vec::new();
@@ -103,6 +104,11 @@ impl View {
             paths.first().map_or(scene.camera.look_at - root.call.ray.origin, |(a, b)| *b - *a);
         if ends.is_empty() {
             ends.push((root.call.ray.origin, 0.0));
+        }
+        let whole = scene.bounding_sphere().filter(|s| s.radius < distance.length());
+        if whole.is_some() {
+            ends.extend(scene.mesh.positions.iter().map(|&p| (p, 0.0)));
+            ends.extend(scene.spheres.iter().map(|s| (s.shape.center, s.shape.radius)));
         }
         let length = |side: Side| -> f64 {
             let run = |(a, b): &(DVec3, DVec3)| {
@@ -134,11 +140,6 @@ impl View {
         self.rect().clip(self.side.flat(from), self.side.flat(to))
     }
 
-    /// A length that is short in the drawing.
-    pub fn short(&self) -> f64 {
-        0.09 * self.rect().width.min(self.rect().height)
-    }
-
     /// A point far beyond the drawing, seen from a point in it.
     pub fn beyond(&self, from: DVec3, direction: DVec3) -> DVec3 {
         from + 10.0 * (self.rect().width + self.rect().height) * direction
@@ -148,6 +149,27 @@ impl View {
     pub fn arrow(&self, pen: &mut Pen<'_>, from: DVec3, to: DVec3, stroke: Stroke) {
         if let Some((from, to)) = self.segment(from, to) {
             pen.arrow(from, to, stroke);
+        }
+    }
+
+    /// A short arrow in a unit direction, with its letter at the tip.
+    pub fn direction(
+        &self,
+        pen: &mut Pen<'_>,
+        from: DVec3,
+        direction: DVec3,
+        letter: &str,
+        stroke: Stroke,
+    ) {
+        let short = 0.09 * self.rect().height;
+        self.arrow(pen, from, from + short * direction, stroke);
+        let tip = self.side.flat(from + 1.4 * short * direction);
+        if self.rect().clip(tip, tip).is_some() {
+            pen.label(
+                tip,
+                [0.0, 0.0],
+                Text::new(letter, LABEL).bold().color(stroke.color.for_text()),
+            );
         }
     }
 

@@ -78,7 +78,7 @@ pub(super) fn html(walk: &Walk) -> String {
         tree.to_svg()
     );
     let sections = walk.steps.iter().zip(1..).map(section).collect::<String>();
-    let _ = writeln!(html, "<div class=\"text\">\n{sections}</div>");
+    let _ = writeln!(html, "</main>\n<div class=\"below\"><div class=\"text\">\n{sections}</div>");
     let _ = writeln!(
         html,
         "<figure class=\"picture\"><img alt=\"\" src=\"data:image/png;base64,{}\">\
@@ -86,7 +86,7 @@ pub(super) fn html(walk: &Walk) -> String {
         base64(&picture.to_png()),
         escape(caption)
     );
-    let _ = writeln!(html, "</main>\n<script>\n{SCRIPT}</script>\n</body>\n</html>");
+    let _ = writeln!(html, "</div>\n<script>\n{SCRIPT}</script>\n</body>\n</html>");
     html
 }
 
