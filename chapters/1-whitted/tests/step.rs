@@ -30,9 +30,10 @@ fn text(name: &str, pixel: [u32; 2], max_depth: u32) -> String {
 #[test]
 fn the_terms_add_up_to_what_the_method_computes() {
     let size = ImageSize::new(24, 24);
-    let (mut nodes, mut total_reflections) = (0, 0);
-    for (name, level) in [("whitted", None), ("room", None), ("flake", Some("1"))] {
-        let scene = scenes::open(name, level).unwrap().scene;
+    let (mut glass_only, mut beyond) = (0, 0);
+    let pane = parse_scene(PANE, "pane", Path::new("")).unwrap().scene;
+    let scenes = [("whitted", scenes::whitted()), ("room", scenes::room()), ("pane", pane)];
+    for (name, scene) in scenes {
         let (index, sources) = (LinearScan::new(&scene), scene.point_sources());
         let whitted = Whitted::new(World { scene: &scene, index: &index }, Settings::default());
         let rays = scene.camera.primary_rays(size);
@@ -53,13 +54,38 @@ fn the_terms_add_up_to_what_the_method_computes() {
                 let (mirror, refracted) = (answer(spawned.mirror), answer(spawned.refracted));
                 let sum = recursion(local, spawned.k_s, mirror, spawned.k_t, refracted);
                 assert_eq!(sum, node.radiance, "{name}");
-                nodes += 1;
-                total_reflections += usize::from(spawned.total_reflection);
+                // sin θ of the ray is more than n₂ / n₁ = 2 / 3.
+                let sin_squared = 1.0 - node.call.ray.direction.y.powi(2);
+                let is_beyond = name == "pane" && sin_squared > 4.0 / 9.0;
+                assert_eq!(spawned.total_reflection, is_beyond, "{name}");
+                glass_only += u32::from(name == "pane");
+                beyond += u32::from(is_beyond);
             }
         }
     }
-    assert!(nodes > 2000 && total_reflections > 0, "{nodes}, {total_reflections}");
+    assert!(0 < beyond && beyond < glass_only, "both sides of the critical angle: {beyond}");
 }
+
+/// The upper side of glass, seen from inside.
+const PANE: &str = "
+    background = [0.25, 0.5, 0.75]
+    [camera]
+    eye = [0, -2, 0]
+    look_at = [1.8, 0, 0]
+    fov = 40
+    [[light]]
+    position = [1, -1, 0]
+    intensity = 1
+    [material.glass]
+    rho_d = 0.1
+    rho_s = 0.5
+    shininess = 3
+    k_s = 0.1
+    k_t = [0.9, 0.8, 0.7]
+    refractive_index = 1.5
+    [[polygon]]
+    vertices = [[-99, 0, 99], [99, 0, 99], [99, 0, -99], [-99, 0, -99]]
+    material = 'glass'";
 
 /// A lamp of I = 8 two units above a matte and shiny floor, the eye in the same direction at 3 units.
 const BELOW_A_LAMP: &str = "
