@@ -388,9 +388,21 @@ fn steps_that_cannot_be_walked_are_refused() {
         }
         line
     };
-    assert_snapshot!(refusals(&folder, cases.map(line)), @"");
+    assert_snapshot!(refusals(&folder, cases.map(line)), @r"
+    error: --pixel 8,0 lies outside of the picture of 8x8: columns are 0 to 7, rows 0 to 7
+    error: --pixel 0,8 lies outside of the picture of 8x8: columns are 0 to 7, rows 0 to 7
+    error: invalid value '-1,0' for '--pixel <X,Y>': write column and row as two whole numbers, such as 120,80
+    error: invalid value '1' for '--pixel <X,Y>': write column and row as two whole numbers, such as 120,80
+    error: invalid value '1,2,3' for '--pixel <X,Y>': write column and row as two whole numbers, such as 120,80
+    error: invalid value '17' for '--depth <DEPTH>': write a whole number from 0 to 16
+    error: unknown scene `romo`; known: room, horizon, flake, gears, whitted, tetrahedra; or name a .toml or .obj file
+    error: gone.toml: No such file or directory (os error 2); check the path and its permissions
+    error: --out: what kind of file is `old.png`? Its name must end in .html
+    error: --out: cannot write `missing/new.html`: there is no folder `missing`; create it first
+    error: --out: cannot write `folder.html`: it is a folder; name a file in it
+    ");
     let unknown = ["step", "witted", "--scene=whitted", "--pixel=1,1"];
-    assert_snapshot!(refusal(&folder, &unknown), @"");
+    assert_snapshot!(refusal(&folder, &unknown), @"error: unknown algorithm `witted`; known: whitted");
 }
 
 #[test]

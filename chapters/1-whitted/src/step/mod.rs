@@ -314,18 +314,24 @@ impl Walker<'_> {
         debug_assert_eq!(sum, node.radiance, "the sum is that of the method");
         let (view, from, to) = (self.view, surface.position, node.call.ray.origin);
         let color = kind(node.call.kind).1;
-        let mut terms = local.shown();
-        for (child, share, answer) in
-            [(spawned.mirror, spawned.k_s, reflected), (spawned.refracted, spawned.k_t, refracted)]
-        {
-            if child.is_some() {
-                terms += &format!(" + {} {}", share.shown(), answer.shown());
-            }
-        }
+        let term = |name: &str, share: Rgb, answer: Rgb, child: Option<usize>| {
+            let of = |child| {
+                format!("+ {name} = {} {}, call {}", share.shown(), answer.shown(), child + 1)
+            };
+            child.map(of)
+        };
+        let spawned_terms = [
+            term("k_s I_Refl ", spawned.k_s, reflected, spawned.mirror),
+            term("k_t I_Trans", spawned.k_t, refracted, spawned.refracted),
+        ];
         let step = self
             .step(k, "returns I_R = I_Local + k_s I_Refl + k_t I_Trans")
-            .line(format!("    = {terms}"))
-            .line(format!("I_R = {}", sum.shown()))
+            .line(format!("  I_Local     = {}", local.shown()));
+        let step = spawned_terms
+            .into_iter()
+            .flatten()
+            .fold(step, Step::line)
+            .line(format!("  I_R         = {}", sum.shown()))
             .points_out(move |pen| view.arrow(pen, from, to, Stroke::new(color, 4.0)))
             .returns(displayed(sum));
         self.steps.push(step);
@@ -380,5 +386,6 @@ impl Walker<'_> {
 
 /// N at a point of a surface.
 fn normal(view: View, pen: &mut Pen<'_>, at: DVec3, n: DVec3) {
-    view.direction(pen, at, n, "N", Stroke::new(INK, 1.6));
+    // Longer than R and T, so that their letters keep apart.
+    view.direction(pen, at, 1.7 * n, "N", Stroke::new(INK, 1.6));
 }

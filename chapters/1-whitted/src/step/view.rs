@@ -152,7 +152,7 @@ impl View {
         }
     }
 
-    /// A short arrow in a unit direction, with its letter at the tip.
+    /// A direction as an arrow that is short in the drawing if its length is 1, with its letter at the tip.
     pub fn direction(
         &self,
         pen: &mut Pen<'_>,
@@ -163,7 +163,7 @@ impl View {
     ) {
         let short = 0.09 * self.rect().height;
         self.arrow(pen, from, from + short * direction, stroke);
-        let tip = self.side.flat(from + 1.4 * short * direction);
+        let tip = self.side.flat(from + short * (direction + 0.4 * direction.normalize()));
         if self.rect().clip(tip, tip).is_some() {
             pen.label(
                 tip,
