@@ -113,7 +113,7 @@ pub fn walk(request: &Request<'_>) -> Walk {
 fn printable(name: &str) -> String {
     let clean = |c: char| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c };
     let mut short: String = name.chars().take(LONGEST_NAME).map(clean).collect();
-    if short.len() < name.len() && name.chars().nth(LONGEST_NAME).is_some() {
+    if name.chars().nth(LONGEST_NAME).is_some() {
         short.push('…');
     }
     short
