@@ -9,6 +9,7 @@ macro_rules! say {
     }};
 }
 
+mod arguments;
 mod compare;
 mod eq;
 mod exercise;
@@ -19,6 +20,7 @@ mod progress;
 mod render;
 mod repository;
 mod scene;
+mod step;
 mod tidy;
 
 use std::process::ExitCode;
@@ -37,6 +39,7 @@ struct Cli {
 enum Command {
     Figures(figures::Args),
     Render(render::Args),
+    Step(step::Args),
     Compare(compare::Args),
     Eq(eq::Args),
     Exercise(exercise::Args),
@@ -49,6 +52,7 @@ fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Figures(args) => figures::run(&args).map(done),
         Command::Render(args) => render::run(&args).map(done),
+        Command::Step(args) => step::run(&args).map(done),
         Command::Compare(args) => compare::run(&args).map(done),
         Command::Eq(args) => eq::run(&args).map(done),
         Command::Exercise(args) => exercise::run(&args),

@@ -62,7 +62,7 @@ pub const FIGURES: &[Figure] = &[
 ///
 /// # Panics
 /// If it holds something that is no radiance: a figure would hide that.
-fn shown(image: &Image) -> Picture {
+pub(crate) fn shown(image: &Image) -> Picture {
     assert_eq!(image.defects(), Defects::default(), "a picture of radiances");
     let ImageSize { width, height, .. } = image.size();
     Picture::new(width, height, image.to_srgb8(0.0))
