@@ -99,7 +99,7 @@ fn a_start_says_what_to_do_and_never_overwrites() {
     assert_snapshot!(student.accepted(&["start", "6"]), @r"
     E1.6 reflected-ray: The mirror ray (about 10 minutes)
       Slide    « Reflets spéculaires : calcul du rayon réfléchi »
-      Lesson   chapters/1-whitted/README.md, « Reflets spéculaires »
+      Lesson   chapters/1-whitted/README.md, « Reflets spéculaires : calcul du rayon réfléchi, du rayon réfracté (mirror and refracted rays) »
       Predict  the picture colours a ball by the direction in which it mirrors the eye's ray: what is the colour in its middle, and what at its rim?
       Write    reflected_ray in work/chapter-1/src/e06_reflected_ray.rs
       Then     cargo xtask exercise check reflected-ray, or watch reflected-ray

@@ -76,3 +76,14 @@ fn every_solution_stands_where_its_card_says() {
         assert!(is_there, "{}: no `{item}` in {file}", exercise.card.name);
     }
 }
+
+#[test]
+fn the_lesson_has_them_in_order() {
+    let lesson = include_str!("../README.md");
+    let places = COURSE.exercises.iter().map(|exercise| {
+        let card = exercise.card;
+        let entry = format!("**Exercise {}**, `cargo xtask exercise start {}`", card.id, card.name);
+        lesson.find(&entry).unwrap_or_else(|| panic!("the lesson has no {entry}"))
+    });
+    assert!(places.collect::<Vec<_>>().is_sorted());
+}
