@@ -9,8 +9,10 @@ macro_rules! say {
     }};
 }
 
+mod arguments;
 mod compare;
 mod eq;
+mod exercise;
 mod figures;
 mod labels;
 mod names;
@@ -18,6 +20,7 @@ mod progress;
 mod render;
 mod repository;
 mod scene;
+mod step;
 mod tidy;
 
 use std::process::ExitCode;
@@ -36,22 +39,27 @@ struct Cli {
 enum Command {
     Figures(figures::Args),
     Render(render::Args),
+    Step(step::Args),
     Compare(compare::Args),
     Eq(eq::Args),
+    Exercise(exercise::Args),
     /// Checks the rules of the house: labels, dependencies, documentation, links, sizes.
     Tidy,
 }
 
 fn main() -> ExitCode {
+    let done = |()| ExitCode::SUCCESS;
     let result = match Cli::parse().command {
-        Command::Figures(args) => figures::run(&args),
-        Command::Render(args) => render::run(&args),
-        Command::Compare(args) => compare::run(&args),
-        Command::Eq(args) => eq::run(&args),
-        Command::Tidy => tidy::run(),
+        Command::Figures(args) => figures::run(&args).map(done),
+        Command::Render(args) => render::run(&args).map(done),
+        Command::Step(args) => step::run(&args).map(done),
+        Command::Compare(args) => compare::run(&args).map(done),
+        Command::Eq(args) => eq::run(&args).map(done),
+        Command::Exercise(args) => exercise::run(&args),
+        Command::Tidy => tidy::run().map(done),
     };
     match result {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(code) => code,
         Err(error) => {
             eprintln!("error: {error:#}");
             ExitCode::FAILURE

@@ -13,6 +13,15 @@ pub fn choose(kind: &str, given: &str, known: &[&str]) -> Result<usize> {
     bail!("unknown {kind} `{given}`; known: {}", nearest_first(given, known).join(", "))
 }
 
+/// The entry of that name in a table of a `kind` of thing.
+///
+/// # Errors
+/// As [`choose`].
+pub fn named<T: Copy>(kind: &str, given: &str, table: &[(&str, T)]) -> Result<T> {
+    let names: Vec<&str> = table.iter().map(|(name, _)| *name).collect();
+    Ok(table[choose(kind, given, &names)?].1)
+}
+
 fn nearest_first<'a>(given: &str, known: &[&'a str]) -> Vec<&'a str> {
     let given = given.to_lowercase();
     let mut names = known.to_vec();

@@ -1,4 +1,3 @@
-use std::fmt::Display;
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Instant;
@@ -16,7 +15,8 @@ use lancer_core::scene::{PointLight, Scene};
 use lancer_core::world::World;
 use lancer_whitted::{Appel, RayCounts, Settings, Whitted};
 
-use crate::names::choose;
+use crate::arguments::whole;
+use crate::names::named;
 use crate::{progress, scene};
 
 #[derive(Clone, Copy)]
@@ -33,12 +33,6 @@ enum Index {
 
 const METHODS: [(&str, Method); 2] = [("appel", Method::Appel), ("whitted", Method::Whitted)];
 const INDEXES: [(&str, Index); 2] = [("linear", Index::Linear), ("obvhs-bvh2", Index::ObvhsBvh2)];
-
-/// The entry of that name in a table of a `kind` of thing.
-fn named<T: Copy>(kind: &str, given: &str, table: &[(&str, T)]) -> Result<T> {
-    let names: Vec<&str> = table.iter().map(|(name, _)| *name).collect();
-    Ok(table[choose(kind, given, &names)?].1)
-}
 
 /// Renders a scene by any method of the course.
 ///
@@ -124,17 +118,6 @@ fn finite(text: &str) -> Result<f64, String> {
 fn part(text: &str) -> Result<f64, String> {
     let number = text.trim().parse().ok().filter(|number| (0.0..=1.0).contains(number));
     number.ok_or_else(|| "write a number from 0 to 1".to_owned())
-}
-
-/// Reads whole numbers in a range.
-fn whole<T: FromStr + PartialOrd + Copy + Display>(
-    least: T,
-    most: T,
-) -> impl Fn(&str) -> Result<T, String> + Clone {
-    move |text| {
-        let number = text.parse().ok().filter(|number| (least..=most).contains(number));
-        number.ok_or_else(|| format!("write a whole number from {least} to {most}"))
-    }
 }
 
 pub fn run(args: &Args) -> Result<()> {

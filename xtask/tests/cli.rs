@@ -364,6 +364,71 @@ fn pictures_that_cannot_be_compared_are_refused() {
 }
 
 #[test]
+fn steps_that_cannot_be_walked_are_refused() {
+    let folder = folder(&[]);
+    fs::create_dir(folder.path().join("folder.html")).unwrap();
+    let cases: [&[&str]; 11] = [
+        &["--pixel=8,0"],
+        &["--pixel=0,8"],
+        &["--pixel=-1,0"],
+        &["--pixel=1"],
+        &["--pixel=1,2,3"],
+        &["--pixel=1,1", "--depth=17"],
+        &["--pixel=1,1", "--scene=romo"],
+        &["--pixel=1,1", "--scene=gone.toml"],
+        &["--pixel=1,1", "--out=old.png"],
+        &["--pixel=1,1", "--out=missing/new.html"],
+        &["--pixel=1,1", "--out=folder.html"],
+    ];
+    let line = |case: &[&'static str]| {
+        let mut line = vec!["step", "whitted", "--size=8x8"];
+        line.extend(case);
+        if !case.iter().any(|option| option.starts_with("--scene")) {
+            line.push("--scene=whitted");
+        }
+        line
+    };
+    assert_snapshot!(refusals(&folder, cases.map(line)), @r"
+    error: --pixel 8,0 lies outside of the picture of 8x8: columns are 0 to 7, rows 0 to 7
+    error: --pixel 0,8 lies outside of the picture of 8x8: columns are 0 to 7, rows 0 to 7
+    error: invalid value '-1,0' for '--pixel <X,Y>': write column and row as two whole numbers, such as 120,80
+    error: invalid value '1' for '--pixel <X,Y>': write column and row as two whole numbers, such as 120,80
+    error: invalid value '1,2,3' for '--pixel <X,Y>': write column and row as two whole numbers, such as 120,80
+    error: invalid value '17' for '--depth <DEPTH>': write a whole number from 0 to 16
+    error: unknown scene `romo`; known: room, horizon, flake, gears, whitted, tetrahedra; or name a .toml or .obj file
+    error: gone.toml: No such file or directory (os error 2); check the path and its permissions
+    error: --out: what kind of file is `old.png`? Its name must end in .html
+    error: --out: cannot write `missing/new.html`: there is no folder `missing`; create it first
+    error: --out: cannot write `folder.html`: it is a folder; name a file in it
+    ");
+    let unknown = ["step", "witted", "--scene=whitted", "--pixel=1,1"];
+    assert_snapshot!(refusal(&folder, &unknown), @"error: unknown algorithm `witted`; known: whitted");
+}
+
+#[test]
+fn a_walk_is_a_text_or_a_page() {
+    let model = CORNER.replacen("f 1", "mtllib m.mtl\nusemtl <script>alert(1)</script>\nf 1", 1);
+    let library = b"newmtl <script>alert(1)</script>\nKd 0.5 0.5 0.5\nillum 3\nKs 0.5 0.5 0.5\n";
+    let folder = folder(&[("corner.obj", model.as_bytes()), ("m.mtl", library)]);
+    let line = ["step", "whitted", "--scene=corner.obj", "--pixel=16,16", "--size=32x32"];
+    let walked = accepted(&folder, &line);
+    assert_eq!(text(&walked.stderr), "");
+    let walked = text(&walked.stdout);
+    assert!(walked.contains("call 1 meets <script>alert(1)</script> at t = "), "{walked}");
+    let page = |name: &str| {
+        let out = format!("--out={name}");
+        let output = accepted(&folder, &[&line[..], &[&out]].concat());
+        assert!(text(&output.stdout).starts_with(&format!("page    {name}   ")));
+        text(&fs::read(folder.path().join(name)).unwrap())
+    };
+    let first = page("a.html");
+    assert_eq!(first, page("b.HTML"));
+    assert_eq!(first, page("a.html"), "an old page is replaced");
+    assert!(first.contains("call 1 meets &lt;script&gt;alert(1)&lt;/script&gt; at t = "));
+    assert!(!first.contains("<script>alert") && !first.contains("http"));
+}
+
+#[test]
 fn incomplete_and_unknown_commands_are_refused() {
     let lines = [
         vec!["rendr"],
@@ -473,7 +538,7 @@ fn an_interrupt_leaves_no_file() {
 #[test]
 fn every_command_has_help() {
     let help = |arguments: &[&str]| text(&accepted(&folder(&[]), arguments).stdout);
-    for command in ["figures", "render", "compare", "eq", "tidy"] {
+    for command in ["figures", "render", "step", "compare", "eq", "exercise", "tidy"] {
         assert_snapshot!(format!("help_{command}"), help(&[command, "--help"]));
     }
     assert_snapshot!("help", help(&["--help"]));

@@ -55,6 +55,7 @@ mod study;
 mod style;
 mod svg;
 mod tree;
+mod walk;
 mod wrap;
 
 pub use axis::Axis;
@@ -77,6 +78,7 @@ pub use shape::{Anchor, Color, Stroke, Style, Text};
 pub use speed_error::{CurvePoint, MethodCurve, SpeedError};
 pub use study::{Contender, Study};
 pub use tree::Tree;
+pub use walk::{Backdrop, Step, Walk};
 pub use wrap::wrap;
 
 pub use style::{

@@ -68,6 +68,18 @@ impl Picture {
         Self::from_fn(width, height, |column, row| self.get(x + column, y + row))
     }
 
+    /// The picture with a frame around the pixel in column `x` of row `y`, and lines that lead to it.
+    pub fn marked(&self, x: u32, y: u32) -> Self {
+        let is_mark = |column: u32, row: u32| {
+            let (dx, dy) = (x.abs_diff(column), y.abs_diff(row));
+            let away = dx.max(dy);
+            (6..=7).contains(&away) || (8..22).contains(&away) && dx.min(dy) == 0
+        };
+        Self::from_fn(self.width, self.height, |column, row| {
+            if is_mark(column, row) { [20, 20, 20] } else { self.get(column, row) }
+        })
+    }
+
     /// The picture as a PNG file.
     pub fn to_png(&self) -> Vec<u8> {
         let bytes: Vec<u8> = self.rgb.iter().flatten().copied().collect();
@@ -213,6 +225,19 @@ mod tests {
         let read = image::load_from_memory(&picture.to_png()).unwrap().to_rgb8();
         assert_eq!((read.width(), read.height()), (5, 4));
         assert!(read.pixels().map(|pixel| pixel.0).eq(picture.rgb.iter().copied()));
+    }
+
+    #[test]
+    fn a_mark_leaves_its_pixel_to_be_seen() {
+        let white = Picture::from_fn(40, 40, |_, _| [255; 3]);
+        let marked = white.marked(2, 20);
+        let is_dark = |x, y| marked.get(x, y) == [20; 3];
+        assert!(
+            !is_dark(2, 20) && !is_dark(7, 20) && !is_dark(2, 15),
+            "the pixel and what is around"
+        );
+        assert!(is_dark(8, 20) && is_dark(9, 20) && is_dark(2, 14) && is_dark(8, 26), "a frame");
+        assert!(is_dark(23, 20) && !is_dark(24, 20) && !is_dark(23, 21), "a line to it");
     }
 
     #[test]

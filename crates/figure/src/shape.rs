@@ -38,9 +38,14 @@ impl Color {
         }
     }
 
+    /// Red, green and blue as linear light, from 0 to 1.
+    pub fn linear(self) -> [f64; 3] {
+        self.rgb.map(|byte| linear_light()[byte as usize])
+    }
+
     /// The relative luminance, from 0 (black) to 1 (white).
     pub fn luminance(self) -> f64 {
-        let [red, green, blue] = self.rgb.map(|byte| linear_light()[byte as usize]);
+        let [red, green, blue] = self.linear();
         0.2126 * red + 0.7152 * green + 0.0722 * blue
     }
 

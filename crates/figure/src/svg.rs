@@ -22,7 +22,7 @@ pub(crate) fn document(canvas: &Canvas) -> String {
         escape(&canvas.title),
         escape(&canvas.description)
     );
-    svg.push_str(&glyph_definitions(canvas));
+    svg.push_str(&glyph_definitions([canvas]));
     let _ = writeln!(svg, "<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>");
     for primitive in &canvas.primitives {
         svg.push_str(&element(primitive));
@@ -144,11 +144,29 @@ fn glyph_id(character: char, weight: Weight) -> String {
     format!("{face}{:x}", u32::from(character))
 }
 
-/// One `<path>` for each character in use, which texts refer to.
-fn glyph_definitions(canvas: &Canvas) -> String {
-    let used: BTreeSet<(Weight, char)> = canvas
-        .primitives
-        .iter()
+/// The elements of a canvas for a page that holds its [`glyph_definitions`], without the canvas's white
+/// sheet: in groups, each with its attributes and the number of its primitives.
+pub(crate) fn inline(canvas: &Canvas, groups: &[(String, usize)]) -> String {
+    let (width, height) = (coordinate(canvas.width), coordinate(canvas.height));
+    let mut svg = format!("<svg viewBox=\"0 0 {width} {height}\" role=\"img\">\n");
+    let mut primitives = canvas.primitives.iter();
+    for (attributes, count) in groups {
+        let _ = writeln!(svg, "<g{attributes}>");
+        for primitive in primitives.by_ref().take(*count) {
+            svg.push_str(&element(primitive));
+            svg.push('\n');
+        }
+        svg.push_str("</g>\n");
+    }
+    svg.push_str("</svg>\n");
+    svg
+}
+
+/// One `<path>` for each character in use on the canvases, which texts refer to.
+pub(crate) fn glyph_definitions<'a>(canvases: impl IntoIterator<Item = &'a Canvas>) -> String {
+    let used: BTreeSet<(Weight, char)> = canvases
+        .into_iter()
+        .flat_map(|canvas| &canvas.primitives)
         .filter_map(|primitive| match primitive {
             Primitive::Text { text, .. } => Some(text),
             _ => None,

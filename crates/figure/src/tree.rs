@@ -47,6 +47,21 @@ impl Tree {
         self.node_width().max(Text::new(&self.edge, TICK).width()) / 2.0
     }
 
+    /// How wide it is.
+    pub(crate) fn width(&self) -> f64 {
+        let placed = self.laid_out();
+        placed.right() - placed.left()
+    }
+
+    /// The nodes in the middle of `rect`, parents before their children, left before right.
+    pub(crate) fn parts(&self, rect: Rect) -> Vec<Part<'_>> {
+        let placed = self.laid_out();
+        let root = rect.center()[0] - (placed.left() + placed.right()) / 2.0;
+        let mut parts = Vec::new();
+        placed.collect([root, rect.y + 2.0 + NODE_HEIGHT / 2.0], None, &mut parts);
+        parts
+    }
+
     /// The tree with the middle of each node, its root at 0, its children pushed apart just so far that
     /// their outlines keep their distance on every level.
     fn laid_out(&self) -> Placed<'_> {
@@ -87,7 +102,7 @@ struct Placed<'a> {
     outline: Vec<(f64, f64)>,
 }
 
-impl Placed<'_> {
+impl<'a> Placed<'a> {
     fn left(&self) -> f64 {
         self.outline.iter().map(|sides| sides.0).fold(0.0, f64::min)
     }
@@ -96,22 +111,40 @@ impl Placed<'_> {
         self.outline.iter().map(|sides| sides.1).fold(0.0, f64::max)
     }
 
-    fn draw(&self, canvas: &mut Canvas, [x, y]: Point) {
-        let edge = Stroke::new(MUTED, 1.8);
+    /// Adds the node, whose parent is at `above`, and what hangs below it.
+    fn collect(&self, at: Point, above: Option<Point>, parts: &mut Vec<Part<'a>>) {
+        parts.push(Part { tree: self.tree, at, above });
         for (shift, child) in &self.children {
-            let at = [x + shift, y + LEVEL];
-            let bend = [at[0], at[1] - NODE_HEIGHT / 2.0 - STEM];
-            canvas.polyline(vec![[x, y + NODE_HEIGHT / 2.0], bend, at], edge);
-            let text = Text::new(&child.tree.edge, TICK).color(MUTED).centered().halo();
-            canvas.text([bend[0], bend[1] + (STEM + CAP_HEIGHT * TICK) / 2.0], text);
-            child.draw(canvas, at);
+            child.collect([at[0] + shift, at[1] + LEVEL], Some(at), parts);
         }
-        let node = Rect::around([x, y], self.tree.node_width(), NODE_HEIGHT);
-        let style =
-            Style::fill(self.tree.color.mix(Color::WHITE, 0.86)).outlined(self.tree.color, 2.5);
-        canvas.rounded_rect(node, 9.0, style);
-        let text =
-            Text::new(&self.tree.label, LABEL).bold().color(self.tree.color.for_text()).centered();
+    }
+}
+
+/// A node in its place, with the edge that leads down to it.
+pub(crate) struct Part<'a> {
+    tree: &'a Tree,
+    at: Point,
+    above: Option<Point>,
+}
+
+impl Part<'_> {
+    /// The box of the node.
+    pub fn node(&self) -> Rect {
+        Rect::around(self.at, self.tree.node_width(), NODE_HEIGHT)
+    }
+
+    pub fn draw(&self, canvas: &mut Canvas) {
+        let Self { tree, at: [x, y], above } = *self;
+        if let Some([from, over]) = above {
+            let bend = [x, y - NODE_HEIGHT / 2.0 - STEM];
+            let line = vec![[from, over + NODE_HEIGHT / 2.0], bend, [x, y]];
+            canvas.polyline(line, Stroke::new(MUTED, 1.8));
+            let text = Text::new(&tree.edge, TICK).color(MUTED).centered().halo();
+            canvas.text([x, bend[1] + (STEM + CAP_HEIGHT * TICK) / 2.0], text);
+        }
+        let style = Style::fill(tree.color.mix(Color::WHITE, 0.86)).outlined(tree.color, 2.5);
+        canvas.rounded_rect(self.node(), 9.0, style);
+        let text = Text::new(&tree.label, LABEL).bold().color(tree.color.for_text()).centered();
         canvas.text([x, y + CAP_HEIGHT / 2.0 * LABEL], text);
     }
 }
@@ -123,9 +156,9 @@ impl Panel for Tree {
 
     /// Draws the tree in the middle; one too wide for `rect` reaches over its sides.
     fn draw(&self, canvas: &mut Canvas, rect: Rect) {
-        let placed = self.laid_out();
-        let root = rect.center()[0] - (placed.left() + placed.right()) / 2.0;
-        placed.draw(canvas, [root, rect.y + 2.0 + NODE_HEIGHT / 2.0]);
+        for part in self.parts(rect) {
+            part.draw(canvas);
+        }
     }
 }
 

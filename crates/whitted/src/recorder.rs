@@ -69,15 +69,20 @@ impl RayCounts {
     pub fn total(&self) -> u64 {
         self.primary + self.mirror + self.refracted + self.shadow
     }
+
+    /// The count of the rays that are traced for that reason.
+    pub fn of_kind(&mut self, kind: RayKind) -> &mut u64 {
+        match kind {
+            RayKind::Primary => &mut self.primary,
+            RayKind::Mirror => &mut self.mirror,
+            RayKind::Refracted => &mut self.refracted,
+        }
+    }
 }
 
 impl Recorder for RayCounts {
     fn enter(&mut self, call: &Call) {
-        *match call.kind {
-            RayKind::Primary => &mut self.primary,
-            RayKind::Mirror => &mut self.mirror,
-            RayKind::Refracted => &mut self.refracted,
-        } += 1;
+        *self.of_kind(call.kind) += 1;
     }
 
     fn shadow(&mut self, _ray: &Ray, _visible: bool) {

@@ -164,7 +164,9 @@ impl<'a> Whitted<'a> {
             && call.depth <= max_depth
         {
             let survival = call.weight / min_weight;
-            if Uniform::of_ray(seed, &call.ray).number() < survival {
+            // A ray between two mirrors may come back bit for bit: the depth tells its turns apart.
+            let turn = seed ^ u64::from(call.depth) << 32;
+            if Uniform::of_ray(turn, &call.ray).number() < survival {
                 let survivor = Call { weight: min_weight, ..call };
                 return self.follow(&survivor, recorder) / survival;
             }

@@ -4,8 +4,8 @@ use toml::{Table, Value};
 use super::Violation;
 use crate::repository::Source;
 
-/// The arrows between packages: in `crates/`, core and figure use none of ours and the others use
-/// core alone, except in their own tests and benches; chapters, tests and xtask may use all.
+/// The arrows between packages: in `crates/`, core and figure use none of ours, exercise uses these two and
+/// the others use core alone, except in their own tests and benches; chapters, tests and xtask may use all.
 ///
 /// # Errors
 /// If a manifest is no TOML.
@@ -55,6 +55,7 @@ fn may_use(user: &str, used: &str, is_dev: bool) -> bool {
     match user.strip_prefix("crates/") {
         None => true,
         Some("core" | "figure") => false,
+        Some("exercise") if used == "crates/figure" => true,
         Some(_) => used == "crates/core" || is_dev && used.starts_with("crates/"),
     }
 }
@@ -160,6 +161,13 @@ mod tests {
             with(
                 "xtask/Cargo.toml",
                 "[package]\nname = \"xtask\"\n[dependencies]\nchapter-1 = {}\n"
+            ),
+            ""
+        );
+        assert_eq!(
+            with(
+                "crates/exercise/Cargo.toml",
+                "[package]\nname = \"lancer-exercise\"\n[dependencies]\nlancer-figure = {}\n"
             ),
             ""
         );

@@ -55,8 +55,10 @@ fn check_code(
     report: &mut impl FnMut(usize, String, &'static str),
 ) {
     let in_accel = source.path.starts_with("crates/accel/");
+    // A stub is to be finished by whoever takes the course.
+    let is_stub = source.path.contains("/stubs/");
     for name in ["todo", "dbg", "unimplemented"] {
-        if has_word(code, name, "!") {
+        if !(is_stub && name == "todo") && has_word(code, name, "!") {
             report(line.number, format!("`{name}!` is left"), "finish the work or remove it");
         }
     }
@@ -225,6 +227,8 @@ mod tests {
         ] {
             assert_eq!(check(&[Source::new("crates/core/src/a.rs", code)]).len(), count, "{code}");
         }
+        assert_eq!(of("chapters/1/stubs/a.rs", "fn f() { todo!() }\n"), "");
+        assert_ne!(of("chapters/1/stubs/a.rs", "fn f() { dbg!() }\n"), "");
     }
 
     #[test]

@@ -117,7 +117,7 @@ struct Point {
 }
 
 /// The scene at one scale and place.
-pub(super) struct Site {
+pub(crate) struct Site {
     scene: Scene,
     light: DVec3,
     points: Vec<Point>,
@@ -128,7 +128,7 @@ pub(super) struct Site {
 impl Site {
     /// The scene turned so that nothing is axis-aligned, `scale` times as large and `away` times its size
     /// from the origin, and what a picture of it sees. The eye sees the floor alone, through the sheets.
-    pub(super) fn new(scale: f64, away: f64, size: ImageSize) -> Self {
+    pub(crate) fn new(scale: f64, away: f64, size: ImageSize) -> Self {
         let turn = DQuat::from_euler(EulerRot::XYZ, 0.4, 0.7, -0.3);
         let shift = scale * away * DVec3::new(0.48, -0.6, 0.64);
         let to_world = DAffine3::from_scale_rotation_translation(DVec3::splat(scale), turn, shift);
@@ -184,7 +184,7 @@ impl Site {
     }
 
     /// Whether each point is taken for dark.
-    pub(super) fn dark(&self, start: impl Fn(&SurfacePoint, DVec3) -> Ray) -> Vec<bool> {
+    pub(crate) fn dark(&self, start: impl Fn(&SurfacePoint, DVec3) -> Ray) -> Vec<bool> {
         let index = ObvhsBvh2::build(&self.scene);
         self.shadow_rays(start).map(|ray| index.occluded(&ray, Interval::up_to(1.0))).collect()
     }
@@ -198,7 +198,7 @@ impl Site {
     }
 
     /// How many points are dark though the light shines there, and how many bright though in a shadow.
-    pub(super) fn wrong(&self, dark: &[bool]) -> [usize; 2] {
+    pub(crate) fn wrong(&self, dark: &[bool]) -> [usize; 2] {
         [false, true].map(|shadowed| {
             let points = self.points.iter().zip(dark);
             points.filter(|(point, dark)| point.shadowed == shadowed && **dark != shadowed).count()
@@ -206,7 +206,7 @@ impl Site {
     }
 
     /// The floor in grey; what is wrongly dark is red, what is wrongly bright is yellow.
-    fn picture(&self, size: ImageSize, dark: &[bool]) -> Picture {
+    pub(crate) fn colors(&self, size: ImageSize, dark: &[bool]) -> Vec<[u8; 3]> {
         let mut pixels = vec![[255; 3]; size.pixels()];
         for (point, dark) in self.points.iter().zip(dark) {
             pixels[point.pixel] = match (*dark, point.shadowed) {
@@ -216,7 +216,7 @@ impl Site {
                 (false, true) => [255, 214, 40],
             };
         }
-        Picture::new(size.width, size.height, pixels)
+        pixels
     }
 }
 
@@ -265,7 +265,8 @@ pub fn make(effort: Effort) -> Finished {
                 data.push(names.into_iter().chain(counts.map(Into::into)));
                 if SHOWN.contains(&(away, exponent, name)) {
                     let title = format!("{name}: {both:.0} % wrong");
-                    let tile = Tile::new(title, site.picture(size, &dark)).color(color(k));
+                    let picture = Picture::new(size.width, size.height, site.colors(size, &dark));
+                    let tile = Tile::new(title, picture).color(color(k));
                     pictures = pictures.tile(tile);
                 }
             }

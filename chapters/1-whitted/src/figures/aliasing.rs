@@ -5,7 +5,6 @@ use std::f64::consts::PI;
 use glam::DVec2;
 use lancer_core::Rgb;
 use lancer_core::image::{Image, ImageSize};
-use lancer_core::metric::compare;
 use lancer_core::render::{Control, render_pixels};
 use lancer_core::sampling::{Pattern, PixelSampling};
 use lancer_core::scene::Scene;
@@ -14,7 +13,7 @@ use lancer_figure::{
 };
 use lancer_whitted::{RayCounts, Settings};
 
-use super::{shown, trace_picture};
+use super::{errors_of, shown, trace_picture};
 use crate::scenes;
 
 const PATTERNS: [(Pattern, &str); 3] =
@@ -131,7 +130,7 @@ pub fn make(effort: Effort) -> Finished {
         })
         .collect();
     let (study, pictures) = Study::measure("samples", 3, contenders, |image: &Image| {
-        let errors = compare(&reference, image).expect("pictures of one size").named();
+        let errors = errors_of(&reference, image);
         let rings = false_rings(&zone_plate, &reference, image);
         errors.into_iter().chain([("false rings", rings)]).collect()
     });

@@ -3,7 +3,7 @@
 use std::ops::AddAssign;
 
 use lancer_core::image::{Image, ImageSize};
-use lancer_core::metric::{absolute_error_map, compare, rmse};
+use lancer_core::metric::{absolute_error_map, rmse};
 use lancer_core::sampling::PixelSampling;
 use lancer_core::scene::Scene;
 use lancer_figure::{
@@ -12,7 +12,7 @@ use lancer_figure::{
 };
 use lancer_whitted::{AtLimit, Call, RayCounts, Recorder, Settings};
 
-use super::{shown, trace_picture};
+use super::{error_tile, errors_of, shown, trace_picture};
 use crate::scenes;
 
 /// Counts the rays, and the weight of those that were cut: what the picture may still lack.
@@ -79,13 +79,9 @@ pub fn make(effort: Effort) -> Finished {
         .collect();
     let (study, outcomes) =
         Study::measure("rays", 3, contenders, |(image, weight): &(Image, f64)| {
-            let errors = compare(&reference.0, image).expect("pictures of one size");
+            let errors = errors_of(&reference.0, image);
             let mean = mean_error(&reference.0, image);
-            errors
-                .named()
-                .into_iter()
-                .chain([("mean_abs", mean), ("weight_left", *weight)])
-                .collect()
+            errors.into_iter().chain([("mean_abs", mean), ("weight_left", *weight)]).collect()
         });
 
     // The lost light per weight left: the mean radiance behind the cut rays, about the same everywhere.
@@ -123,15 +119,11 @@ pub fn make(effort: Effort) -> Finished {
     let mut at_depth_3 = Montage::new().color_bar(&scale);
     for (k, (_, name)) in LIMITS.iter().enumerate() {
         let depth_3 = DEPTHS.len() * k + 3;
-        let errors = absolute_error_map(&reference.0, &outcomes[depth_3].0);
-        let errors = errors.expect("pictures of one size");
+        let title = format!("error at depth 3, {name}");
         at_depth_3 = at_depth_3.tile(
-            Tile::new(
-                format!("error at depth 3, {name}"),
-                scale.paint(size.width, size.height, &errors),
-            )
-            .subtitle(format!("RMSE {}", number(study.error(name, "3", "RMSE"))))
-            .color(COLORS[k]()),
+            error_tile(title, &scale, &reference.0, &outcomes[depth_3].0)
+                .subtitle(format!("RMSE {}", number(study.error(name, "3", "RMSE"))))
+                .color(COLORS[k]()),
         );
     }
     let mut bounces = Chart::new(Axis::linear("depth limit, Max_Prof"), Axis::log("per pixel"))

@@ -1,12 +1,12 @@
 //! 1.10: diffuse light between surfaces, and what a constant can stand for.
 
-use glam::{DVec2, Vec3};
+use glam::Vec3;
 use lancer_accel::ObvhsBvh2;
 use lancer_core::Rgb;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::image::{Image, ImageSize};
-use lancer_core::metric::{absolute_error_map, compare, rmse};
-use lancer_core::render::{Control, Rendering, render_pixels};
+use lancer_core::metric::{absolute_error_map, rmse};
+use lancer_core::render::Rendering;
 use lancer_core::sampling::{Pattern, PixelSampling, Uniform};
 use lancer_core::scene::{Pigment, Scene};
 use lancer_core::world::World;
@@ -14,9 +14,9 @@ use lancer_figure::{
     Axis, Chart, Contender, Effort, Finished, HeatScale, Montage, Plate, Row, Series, Study, Tile,
     category_color, method_color, number,
 };
-use lancer_whitted::{Lighting, RayCounts, Recorder, Settings};
+use lancer_whitted::{Lighting, RayCounts, Settings};
 
-use super::{pixelwise, shown, whitted_picture};
+use super::{error_tile, errors_of, picture, pixelwise, shown, whitted_picture};
 use crate::scenes;
 
 /// A lamp in the middle of a hollow sphere of radius 1: the direct light is ρ_d everywhere.
@@ -46,30 +46,20 @@ const ROOM: &str = "
         { vertices = [[1, 0, -1], [1, 0, 4], [1, 2, 4], [1, 2, -1]], material = 'green' },
     ]";
 
-/// Counts the rays of a path.
-#[derive(Clone, Copy, Default)]
-struct Rays(u64);
-
-impl Recorder for Rays {
-    fn shadow(&mut self, _ray: &Ray, _visible: bool) {
-        self.0 += 1;
-    }
-}
-
-impl std::ops::AddAssign for Rays {
-    fn add_assign(&mut self, other: Self) {
-        self.0 += other.0;
-    }
-}
-
 /// The radiance along a ray with the light that comes by way of other matte surfaces, by one random
 /// path: at each surface the lamps, and on in a direction that is the likelier the more it counts, by the
 /// cosine. A path goes on with the probability of its surface's reflectance, so that none is cut short.
-fn path_radiance(lighting: &Lighting, mut ray: Ray, random: &mut Uniform, rays: &mut Rays) -> Rgb {
+/// All its rays but those to lamps are counted as primary.
+fn path_radiance(
+    lighting: &Lighting,
+    mut ray: Ray,
+    random: &mut Uniform,
+    rays: &mut RayCounts,
+) -> Rgb {
     let World { scene, index } = lighting.world;
     let (mut radiance, mut weight) = (Rgb::ZERO, Rgb::ONE);
     loop {
-        rays.0 += 1;
+        rays.primary += 1;
         let Some(hit) = index.closest_hit(&ray, Interval::POSITIVE) else {
             return radiance + weight * scene.background;
         };
@@ -108,17 +98,13 @@ impl Method {
             Self::Paths { samples, seed } => {
                 let index = ObvhsBvh2::build(scene);
                 let lighting = Lighting::new(World { scene, index: &index });
-                let rays = scene.camera.primary_rays(size);
                 let sampling = PixelSampling { pattern: Pattern::Jittered, samples, seed };
-                let radiance = |film: DVec2, counts: &mut Rays| {
-                    // The sample's place tells it from all others.
-                    let [x, y] = (film * 65_536.0).to_array().map(|place| place as u32);
-                    let mut random = Uniform::new(seed, x, y);
-                    path_radiance(&lighting, rays.through(film.x, film.y), &mut random, counts)
+                let radiance = |ray: &Ray, rays: &mut RayCounts| {
+                    let mut random = Uniform::of_ray(seed, ray);
+                    path_radiance(&lighting, *ray, &mut random, rays)
                 };
-                let rendering = render_pixels(size, sampling, Control::default(), radiance);
-                let rendering = rendering.expect("nobody cancels a figure");
-                (rendering.image, rendering.counts.0)
+                let rendering = picture(scene, size, sampling, radiance);
+                (rendering.image, rendering.counts.total())
             }
         }
     }
@@ -193,7 +179,7 @@ pub fn make(effort: Effort) -> Finished {
         .collect();
     let (study, outcomes) =
         Study::measure("rays", 3, contenders, |(image, in_spheres): &(Image, [Method; 5])| {
-            let errors = compare(&reference, image).expect("pictures of one size").named();
+            let errors = errors_of(&reference, image);
             let spheres = IN_SPHERE.into_iter().zip(in_spheres.iter().zip(RHO));
             let spheres = spheres.map(|(name, (method, rho))| (name, in_sphere(*method, rho)));
             errors.into_iter().chain(spheres).collect()
@@ -208,13 +194,18 @@ pub fn make(effort: Effort) -> Finished {
     let constant_is_exact = (0..RHO.len()).all(|k| off(CONSTANT, "1", k) < f64::from(f32::EPSILON));
     let paths_agree = (0..RHO.len()).all(|k| off(PATHS, "256", k) < 5.2 * (RHO[k] / count).sqrt());
     let black = Image::new(size);
-    let rms = rmse(&black, &indirect).expect("pictures of one size");
-    let left = study.error(CONSTANT, "1", "RMSE") / rms;
-    let share = rms / rmse(&black, &reference).expect("pictures of one size");
-    let holds = constant_is_exact && paths_agree && left > 0.2 && residual < 0.5 * left * rms;
+    let mean = |image: &Image| {
+        let map = absolute_error_map(&black, image).expect("pictures of one size");
+        map.iter().sum::<f64>() / map.len() as f64
+    };
+    let left = mean(&pixelwise(&outcomes[1].0, &reference, |a, b| a - b)) / mean(&indirect);
+    let share = mean(&indirect) / mean(&reference);
+    // What the constant leaves is no noise of the reference.
+    let is_seen = study.error(CONSTANT, "1", "RMSE") > 2.0 * residual;
+    let holds = constant_is_exact && paths_agree && is_seen;
     let claim = format!(
         "In a matte sphere a constant stands for the light between surfaces exactly, I_a = direct / (1 − ρ); \
-         in a plastered room, where {:.0} % of the radiance is such light, the best constant misses {:.0} % of it.",
+         in a plastered room, where {:.0} % of the light is of that kind, the best constant is off by {:.0} % of it.",
         100.0 * share,
         100.0 * left
     );
@@ -231,10 +222,7 @@ pub fn make(effort: Effort) -> Finished {
         .tile(tile(4, "16 paths per pixel", PATHS, "16"))
         .tile(Tile::new("reference", shown(&reference)).color(method_color("reference")));
     let scale = HeatScale::linear("|error|", 0.0, 0.2);
-    let errors = |title: &str, k: usize| {
-        let map = absolute_error_map(&reference, &outcomes[k].0).expect("pictures of one size");
-        Tile::new(title, scale.paint(size.width, size.height, &map))
-    };
+    let errors = |title: &str, k: usize| error_tile(title, &scale, &reference, &outcomes[k].0);
     let maps = Montage::new()
         .tile(errors("error: I_a = 0", 0))
         .tile(errors("error: best I_a", 1))

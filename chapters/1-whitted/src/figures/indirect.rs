@@ -6,7 +6,7 @@ use lancer_core::Rgb;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::illumination::{Reflectance, attenuation, local};
 use lancer_core::image::{Image, ImageSize};
-use lancer_core::metric::{absolute_error_map, compare, rmse};
+use lancer_core::metric::rmse;
 use lancer_core::optics::reflect;
 use lancer_core::sampling::{Pattern, PixelSampling, Uniform};
 use lancer_core::scene::{MaterialId, PrimaryRays, Scene};
@@ -17,7 +17,7 @@ use lancer_figure::{
 };
 use lancer_whitted::{RayCounts, Settings};
 
-use super::{picture, pixelwise, shown, trace_picture};
+use super::{error_tile, errors_of, picture, pixelwise, shown, trace_picture};
 use crate::scenes;
 
 /// The mirror's lower corner, width and height, in the plane z = −1; it faces +z.
@@ -63,20 +63,22 @@ impl<'a> Stage<'a> {
         self.world.scene.material(self.mirror).k_s
     }
 
-    fn surface(&self, ray: &Ray) -> Option<SurfacePoint> {
+    fn surface(&self, ray: &Ray, rays: &mut u64) -> Option<SurfacePoint> {
+        *rays += 1;
         let hit = self.world.index.closest_hit(ray, Interval::POSITIVE)?;
         Some(self.world.scene.surface_at(ray, &hit))
     }
 
-    fn reaches(&self, surface: &SurfacePoint, target: DVec3) -> bool {
+    fn reaches(&self, surface: &SurfacePoint, target: DVec3, rays: &mut u64) -> bool {
+        *rays += 1;
         !self.world.index.occluded(&surface.spawn_to(target), Interval::up_to(1.0))
     }
 
     /// Where the mirror ray towards the image of `point` meets the mirror, if nothing is in its way and
     /// the mirror sends it on to `point`.
-    fn by_way_of_mirror(&self, surface: &SurfacePoint, point: DVec3) -> bool {
-        let mirrored = self.surface(&surface.spawn(image_of(point) - surface.position));
-        mirrored.is_some_and(|q| q.material == self.mirror && self.reaches(&q, point))
+    fn by_way_of_mirror(&self, surface: &SurfacePoint, point: DVec3, rays: &mut u64) -> bool {
+        let mirrored = self.surface(&surface.spawn(image_of(point) - surface.position), rays);
+        mirrored.is_some_and(|q| q.material == self.mirror && self.reaches(&q, point, rays))
     }
 
     fn diffuse(&self, surface: &SurfacePoint) -> Rgb {
@@ -86,14 +88,14 @@ impl<'a> Stage<'a> {
 
     /// What the eye sees along a ray of the light that comes by way of the mirror: eq:local for the
     /// lamp's mirror image, wherever the mirror shows it.
-    fn mirrored_light(&self, ray: &Ray) -> Rgb {
-        let Some(surface) = self.surface(ray) else { return Rgb::ZERO };
+    fn mirrored_light(&self, ray: &Ray, rays: &mut u64) -> Rgb {
+        let Some(surface) = self.surface(ray, rays) else { return Rgb::ZERO };
         let n = surface.shading_normal_towards(-ray.direction);
         if surface.material == self.mirror {
             let seen = surface.spawn(reflect(ray.direction, n));
-            return self.k_s() * self.mirrored_light(&seen);
+            return self.k_s() * self.mirrored_light(&seen, rays);
         }
-        if !self.by_way_of_mirror(&surface, self.lamp) {
+        if !self.by_way_of_mirror(&surface, self.lamp, rays) {
             return Rgb::ZERO;
         }
         let to_image = image_of(self.lamp) - surface.position;
@@ -156,13 +158,11 @@ fn forward(stage: &Stage, film: &Film, count: u32) -> Forward {
         let direction = to_mirror.normalize();
         let area = MIRROR.x * MIRROR.y / f64::from(count);
         let cone = area * direction.z.abs() / to_mirror.length_squared();
-        solid_angle += cone;
-        traced += 1;
-        let light = stage.surface(&Ray::new(stage.lamp, direction));
+        let light = stage.surface(&Ray::new(stage.lamp, direction), &mut traced);
         let Some(mirror) = light.filter(|q| q.material == stage.mirror) else { continue };
+        solid_angle += cone;
         let onwards = reflect(direction, DVec3::Z);
-        traced += 1;
-        let Some(surface) = stage.surface(&mirror.spawn(onwards)) else { continue };
+        let Some(surface) = stage.surface(&mirror.spawn(onwards), &mut traced) else { continue };
         let carried = stage.diffuse(&surface) * stage.k_s() * stage.intensity * cone;
         let n = surface.shading_normal_towards(-onwards);
         // The mirror shows the surface's image, whose normal is mirrored as well.
@@ -171,11 +171,10 @@ fn forward(stage: &Stage, film: &Film, count: u32) -> Forward {
             let Some(pixel) = film.pixel(point).filter(|_| n.dot(film.eye - point) > 0.0) else {
                 continue;
             };
-            traced += 1;
             let (visible, share) = if by_mirror {
-                (stage.by_way_of_mirror(&surface, film.eye), stage.k_s())
+                (stage.by_way_of_mirror(&surface, film.eye, &mut traced), stage.k_s())
             } else {
-                (stage.reaches(&surface, film.eye), Rgb::ONE)
+                (stage.reaches(&surface, film.eye, &mut traced), Rgb::ONE)
             };
             if visible {
                 radiances[pixel] += carried * share * film.splat(point, n);
@@ -188,6 +187,8 @@ fn forward(stage: &Stage, film: &Film, count: u32) -> Forward {
 const WHITTED: &str = "Whitted";
 const FORWARD: &str = "Whitted + light rays";
 const SAMPLES: [u32; 3] = [1, 4, 16];
+/// Of the contenders' samples.
+const SEED: u64 = 5;
 
 /// What a contender made.
 struct Outcome {
@@ -203,23 +204,25 @@ pub fn make(effort: Effort) -> Finished {
     let stage = Stage::new(World { scene: &scene, index: &index });
     let size = effort.pick(ImageSize::new(72, 54), ImageSize::new(400, 300));
     let film = Film { rays: scene.camera.primary_rays(size), size, eye: scene.camera.eye };
-    let sampling = |samples, seed| PixelSampling { pattern: Pattern::Owen, samples, seed };
-    let whitted = |scene: &Scene, samples| {
-        let sampling = sampling(samples, 5);
+    let whitted = |scene: &Scene, samples, seed| {
+        let sampling = PixelSampling { pattern: Pattern::Owen, samples, seed };
         let rendering = trace_picture::<RayCounts>(scene, Settings::default(), size, sampling);
         (rendering.image, rendering.counts.total())
     };
-    let (most, seed) = (effort.pick(16, 32), 5);
-    let mirrored = |seed| {
-        let radiance = |ray: &Ray, _: &mut u64| stage.mirrored_light(ray);
-        picture(&scene, size, sampling(most, seed), radiance).image
+    // Its samples are not those of the contenders, so that no error is shared.
+    let most = effort.pick(16, 32);
+    let light_and_all = |seed| {
+        let sampling = PixelSampling { pattern: Pattern::Owen, samples: most, seed };
+        let radiance = |ray: &Ray, rays: &mut u64| stage.mirrored_light(ray, rays);
+        let light = picture(&scene, size, sampling, radiance).image;
+        let all = pixelwise(&whitted(&scene, most, seed).0, &light, |a, b| a + b);
+        (light, all)
     };
-    let missing = mirrored(seed);
-    let reference = pixelwise(&whitted(&scene, most).0, &missing, |a, b| a + b);
-    let residual = rmse(&missing, &mirrored(seed + 1)).expect("pictures of one size");
+    let (missing, reference) = light_and_all(101);
+    let residual = rmse(&reference, &light_and_all(102).1).expect("pictures of one size");
 
     let run = |samples, light_rays| {
-        let (image, rays) = whitted(&scene, samples);
+        let (image, rays) = whitted(&scene, samples, SEED);
         if light_rays == 0 {
             return (Outcome { image, samples, solid_angle: f64::NAN }, rays);
         }
@@ -252,11 +255,11 @@ pub fn make(effort: Effort) -> Finished {
     let total =
         |image: &Image| beside.iter().map(|&[x, y]| image.get(x, y).element_sum()).sum::<f64>();
     let share = |outcome: &Outcome| {
-        let without = whitted(&blind, outcome.samples).0;
+        let without = whitted(&blind, outcome.samples, SEED).0;
         total(&pixelwise(&outcome.image, &without, |a, b| a - b)) / total(&missing)
     };
     let (study, outcomes) = Study::measure("rays", 3, contenders, |outcome: &Outcome| {
-        let errors = compare(&reference, &outcome.image).expect("pictures of one size").named();
+        let errors = errors_of(&reference, &outcome.image);
         let more = [("mirrored_light", share(outcome)), ("solid_angle", outcome.solid_angle)];
         errors.into_iter().chain(more).collect()
     });
@@ -287,10 +290,7 @@ pub fn make(effort: Effort) -> Finished {
                 .subtitle("closed form"),
         );
     let scale = HeatScale::log("|error|", 1e-3, 1.0);
-    let errors = |title: &str, image: &Image| {
-        let map = absolute_error_map(&reference, image).expect("pictures of one size");
-        Tile::new(title, scale.paint(size.width, size.height, &map))
-    };
+    let errors = |title: &str, image: &Image| error_tile(title, &scale, &reference, image);
     let maps = Montage::new()
         .tile(errors("error: Whitted", &outcomes[2].image))
         .tile(errors(&format!("error: {} light rays", light_rays[1]), &outcomes[4].image))
@@ -305,7 +305,8 @@ pub fn make(effort: Effort) -> Finished {
         .note("Equal error", study.at_equal_error("RMSE", 0.02, size.pixels() as f64, "rays per pixel"))
         .note("Method", format!(
             "algo:lr; light rays start at the lamp towards random points of the mirror, and where they end \
-             a ray is cast to the eye, directly and by way of the mirror; {} samples per pixel for the rest", SAMPLES[1]
+             a ray is cast to the eye, directly and by way of the mirror, on one thread; {} samples per pixel for \
+             the rest, on all", SAMPLES[1]
         ))
         .note("Reference", format!(
             "closed form: a plane mirror's light is eq:local for the lamp's image behind it, times k_s, where the \

@@ -16,7 +16,7 @@ use lancer_figure::{
 };
 use lancer_whitted::{Appel, RayCounts, Recorder};
 
-use super::{picture, shown};
+use super::{fitted_exponent, picture, shown};
 use crate::scenes;
 
 /// Balls ever farther from a lamp, on a floor.
@@ -50,13 +50,13 @@ const NEAR: f64 = 2.0;
 const COLORS: [fn() -> Color; 3] =
     [|| method_color("appel"), || category_color(5), || category_color(3)];
 
-/// How far the lamp is that the only shadow ray asked for.
+/// How far the lamp is, if a shadow ray asked for it.
 #[derive(Clone, Copy, Default)]
-struct LampDistance(f64);
+struct LampDistance(Option<f64>);
 
 impl Recorder for LampDistance {
     fn shadow(&mut self, ray: &Ray, _visible: bool) {
-        self.0 = ray.direction.length();
+        self.0 = Some(ray.direction.length());
     }
 }
 
@@ -65,7 +65,8 @@ fn radiance_by(appel: &Appel, ray: &Ray, law: Law) -> Rgb {
     let mut distance = LampDistance::default();
     let radiance = appel.trace(ray, &mut distance);
     // I_local is in proportion to 1 / d², and there is no other light.
-    radiance * (distance.0 / NEAR).powi(2) * law(distance.0)
+    let by_law = |d: f64| radiance * (d / NEAR).powi(2) * law(d);
+    distance.0.map_or(Rgb::ZERO, by_law)
 }
 
 /// A white surface of side 1 in the plane y = 0, facing what is above it.
@@ -164,11 +165,9 @@ pub fn make(effort: Effort) -> Finished {
             }
         }
     }
-    let steepness =
-        |pair: &[(f64, f64)]| (pair[1].1 / pair[0].1).ln() / (pair[1].0 / pair[0].0).ln();
-    let off = points.windows(2).map(|pair| (steepness(pair) + 2.0).abs()).fold(0.0, f64::max);
+    let off = points.windows(2).map(|pair| (fitted_exponent(pair) + 2.0).abs()).fold(0.0, f64::max);
     let [near, far] = [errors[0].1, errors[6].1];
-    let error_slope = steepness(&[errors[6], errors[12]]);
+    let error_slope = fitted_exponent(&errors[6..]);
     let holds = off < 1e-12 && near > 0.1 && (error_slope + 2.0).abs() < 0.05;
     let claim = format!(
         "Light falls with slope −2 on logarithmic axes, to {}; a square lamp taken for a point errs by {:.0} % one \

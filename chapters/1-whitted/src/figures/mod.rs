@@ -1,6 +1,6 @@
 //! The figures of the chapter, one file each. To add one: write its `make`, name it in [`FIGURES`].
 
-mod acne;
+pub(crate) mod acne;
 mod aliasing;
 mod depth;
 mod descartes;
@@ -11,13 +11,13 @@ mod indirect;
 mod inverse_square;
 mod local_model;
 mod pruning;
-mod quadratic;
+pub(crate) mod quadratic;
 mod ray_tree;
 mod safety;
 mod slab;
 mod vanishing;
 mod visible;
-mod watertight;
+pub(crate) mod watertight;
 mod where_time_goes;
 
 use std::ops::AddAssign;
@@ -26,12 +26,13 @@ use glam::DVec2;
 use lancer_accel::ObvhsBvh2;
 use lancer_core::Rgb;
 use lancer_core::geometry::Ray;
-use lancer_core::image::{Image, ImageSize};
+use lancer_core::image::{Defects, Image, ImageSize};
+use lancer_core::metric::{absolute_error_map, compare};
 use lancer_core::render::{Control, Rendering, render_pixels};
 use lancer_core::sampling::PixelSampling;
 use lancer_core::scene::Scene;
 use lancer_core::world::World;
-use lancer_figure::{Figure, Picture};
+use lancer_figure::{Figure, HeatScale, Picture, Tile};
 use lancer_whitted::{RayCounts, Recorder, Settings, Whitted};
 
 /// All figures, in the lesson's order.
@@ -58,7 +59,11 @@ pub const FIGURES: &[Figure] = &[
 ];
 
 /// The picture as a display shows it.
-fn shown(image: &Image) -> Picture {
+///
+/// # Panics
+/// If it holds something that is no radiance: a figure would hide that.
+pub(crate) fn shown(image: &Image) -> Picture {
+    assert_eq!(image.defects(), Defects::default(), "a picture of radiances");
     let ImageSize { width, height, .. } = image.size();
     Picture::new(width, height, image.to_srgb8(0.0))
 }
@@ -70,8 +75,25 @@ fn pixelwise(a: &Image, b: &Image, combine: impl Fn(f32, f32) -> f32) -> Image {
     Image::from_pixels(a.size(), pixels.collect())
 }
 
+/// All errors of a picture of the reference's size, by name.
+fn errors_of(reference: &Image, image: &Image) -> [(&'static str, f64); 5] {
+    compare(reference, image).expect("pictures of one size").named()
+}
+
+/// The map of a picture's errors on a scale that it may share with others.
+fn error_tile(
+    title: impl Into<String>,
+    scale: &HeatScale,
+    reference: &Image,
+    image: &Image,
+) -> Tile {
+    let errors = absolute_error_map(reference, image).expect("pictures of one size");
+    let ImageSize { width, height, .. } = image.size();
+    Tile::new(title, scale.paint(width, height, &errors))
+}
+
 /// A picture of a scene: `radiance` along each ray through the picture; `counts` is anything that adds up.
-fn picture<C: Default + Send + AddAssign>(
+pub(crate) fn picture<C: Default + Send + AddAssign>(
     scene: &Scene,
     size: ImageSize,
     sampling: PixelSampling,

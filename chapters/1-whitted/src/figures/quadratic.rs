@@ -123,7 +123,7 @@ fn at(k: f64, solver: Solver) -> (f64, usize) {
 
 /// A sphere k / 5 radii away, turned by one of the 48 symmetries of the cube, with a ray from the origin and
 /// the exact t at which that enters it.
-pub(super) fn far_sphere(k: f64, turn: usize) -> (Sphere, Ray, f64) {
+pub(crate) fn far_sphere(k: f64, turn: usize) -> (Sphere, Ray, f64) {
     let center = turned(SCALE * (k * DIRECTION + ASIDE), turn);
     let ray = Ray::new(DVec3::ZERO, turned(DIRECTION / 7.0, turn));
     (sphere(center), ray, 7.0 * SCALE * (k - 4.0))

@@ -9,15 +9,18 @@ use lancer_core::geometry::{Interval, Ray};
 use lancer_core::image::ImageSize;
 use lancer_core::intersector::{Hit, Intersector};
 use lancer_core::scene::Scene;
+use lancer_core::scene::load::Loaded;
 use lancer_core::world::World;
 use lancer_figure::{
-    Color, Drawing, Effort, FAINT, Finished, INK, LABEL, MUTED, Montage, Pen, Picture, Plate, Row,
-    Stroke, Style, TICK, Table, Text, Tile, Tree, category_color, number,
+    Drawing, Effort, FAINT, Finished, LABEL, Montage, Pen, Plate, Row, Style, Table, Text, Tile,
+    category_color, number,
 };
-use lancer_whitted::{AtLimit, RayEnd, RayKind, RayNode, RayTree, Settings, Whitted, recursion};
+use lancer_whitted::{AtLimit, RayEnd, RayNode, RayTree, Settings, Whitted, recursion};
 
 use super::{shown, whitted_picture};
 use crate::scenes;
+use crate::step::terms::Spawned;
+use crate::step::view::{Side, View, calls, kind};
 
 const SIZE: ImageSize = ImageSize::new(256, 256);
 /// A pixel whose ray passes through glass to plastic, the mirror and the floor.
@@ -25,20 +28,21 @@ const PIXEL: (u32, u32) = (123, 78);
 const SETTINGS: Settings = Settings { max_depth: 4, min_weight: 0.01, at_limit: AtLimit::Black };
 
 pub fn make(_: Effort) -> Finished {
-    let scene = scenes::whitted();
-    let tree_of_boxes = ObvhsBvh2::build(&scene);
+    let loaded = scenes::open("whitted", None).expect("a scene of the chapter");
+    let scene = &loaded.scene;
+    let tree_of_boxes = ObvhsBvh2::build(scene);
     let index = Counting {
         index: &tree_of_boxes,
         closest: AtomicUsize::new(0),
         occluded: AtomicUsize::new(0),
     };
-    let whitted = Whitted::new(World { scene: &scene, index: &index }, SETTINGS);
+    let whitted = Whitted::new(World { scene, index: &index }, SETTINGS);
     let film = DVec2::new(f64::from(PIXEL.0) + 0.5, f64::from(PIXEL.1) + 0.5);
     let ray = scene.camera.primary_rays(SIZE).through(film.x, film.y);
     let mut tree = RayTree::default();
     let radiance = whitted.trace(&ray, &mut tree);
     let traced = index.closest.load(Ordering::Relaxed);
-    let difference = (summed_up(&scene, &tree, 0) - radiance).abs().max_element();
+    let difference = (summed_up(scene, &tree, 0) - radiance).abs().max_element();
     let shadows: usize = tree.nodes.iter().map(|node| node.shadows.len()).sum();
     let asked = index.occluded.load(Ordering::Relaxed);
     let holds = tree.traced() == traced && shadows == asked && difference <= 1e-14;
@@ -71,7 +75,7 @@ pub fn make(_: Effort) -> Finished {
             kind(node.call.kind).0.into(),
             node.call.depth.into(),
             node.call.weight.into(),
-            end(&scene, node).into(),
+            end(&loaded, node).into(),
             node.shadows.len().into(),
             node.radiance.x.into(),
             node.radiance.y.into(),
@@ -79,14 +83,14 @@ pub fn make(_: Effort) -> Finished {
         ]);
     }
 
-    let picture = whitted_picture(&scene, Settings::default(), SIZE).image;
+    let picture = whitted_picture(scene, Settings::default(), SIZE).image;
     let plate = Plate::new("1.6", "The ray tree of one pixel", claim, holds)
         .panel(
             Row::new()
-                .panel(1.0, Montage::new().tile(Tile::new("The pixel", marked(shown(&picture)))))
-                .panel(1.55, from_above(&scene, &tree)),
+                .panel(1.0, Montage::new().tile(Tile::new("The pixel", shown(&picture).marked(PIXEL.0, PIXEL.1))))
+                .panel(1.55, from_above(&loaded, &tree)),
         )
-        .panel(drawn(&scene, &tree, 0))
+        .panel(calls(&tree, 0, &|k| label(&loaded, &tree, k)))
         .note("Drawing", "the scene from above; the numbers are those of the tree's nodes. Edges: what the \
              ray is and its share k; nodes: what it meets")
         .note("Settings", format!(
@@ -121,75 +125,41 @@ impl Intersector for Counting<'_> {
 fn summed_up(scene: &Scene, tree: &RayTree, k: usize) -> Rgb {
     let node = &tree.nodes[k];
     let RayEnd::Surface { hit, local, .. } = node.end else { return node.radiance };
-    let material = scene.material(scene.surface_at(&node.call.ray, &hit).material);
-    let child = |kind: RayKind| {
-        let is_child = |&child: &usize| {
-            tree.nodes[child].parent == Some(k) && tree.nodes[child].call.kind == kind
-        };
-        (0..tree.nodes.len()).find(is_child)
-    };
-    let (mirror, refracted) = (child(RayKind::Mirror), child(RayKind::Refracted));
+    let spawned = Spawned::new(scene, tree, k, &scene.surface_at(&node.call.ray, &hit));
     let below =
         |child: Option<usize>| child.map_or(Rgb::ZERO, |child| summed_up(scene, tree, child));
-    // Total reflection gives both shares to the mirror.
-    let k_s = if refracted.is_none() { material.k_s + material.k_t } else { material.k_s };
-    recursion(local, k_s, below(mirror), material.k_t, below(refracted))
-}
-
-fn kind(kind: RayKind) -> (&'static str, Color) {
-    match kind {
-        RayKind::Primary => ("primary", INK),
-        RayKind::Mirror => ("mirror", category_color(3)),
-        RayKind::Refracted => ("refracted", category_color(0)),
-    }
+    recursion(local, spawned.k_s, below(spawned.mirror), spawned.k_t, below(spawned.refracted))
 }
 
 /// What a ray came to.
-fn end(scene: &Scene, node: &RayNode) -> &'static str {
+fn end(loaded: &Loaded, node: &RayNode) -> String {
     match node.end {
-        RayEnd::Background => "background",
-        RayEnd::Cut => "cut",
+        RayEnd::Background => "background".to_owned(),
+        RayEnd::Cut => "cut".to_owned(),
         RayEnd::Surface { hit, .. } => {
-            let material = scene.material(scene.surface_at(&node.call.ray, &hit).material);
-            if material.k_t != Rgb::ZERO {
-                "glass"
-            } else if material.k_s.max_element() > 0.5 {
-                "mirror"
-            } else if material.k_s != Rgb::ZERO {
-                "plastic"
-            } else {
-                "floor"
-            }
+            let surface = loaded.scene.surface_at(&node.call.ray, &hit);
+            loaded.material_names[surface.material.0 as usize].clone()
         }
     }
 }
 
-fn drawn(scene: &Scene, tree: &RayTree, k: usize) -> Tree {
+/// What a node meets, and the share of its parent's weight that it has.
+fn label(loaded: &Loaded, tree: &RayTree, k: usize) -> [String; 2] {
     let node = &tree.nodes[k];
-    let color = if matches!(node.end, RayEnd::Cut) { MUTED } else { kind(node.call.kind).1 };
-    let label = format!("{} {}", k + 1, end(scene, node));
-    let children = (0..tree.nodes.len()).filter(|&child| tree.nodes[child].parent == Some(k));
-    children.fold(Tree::new(label, color), |drawing, child| {
-        let share = tree.nodes[child].call.weight / node.call.weight;
-        let edge = format!("{} {}", kind(tree.nodes[child].call.kind).0, number(share));
-        drawing.child(edge, drawn(scene, tree, child))
-    })
-}
-
-/// The picture with its pixel in a frame.
-fn marked(picture: Picture) -> Picture {
-    let around = |x: u32, y: u32| {
-        let (dx, dy) = (x.abs_diff(PIXEL.0), y.abs_diff(PIXEL.1));
-        (6..=7).contains(&dx.max(dy)) || (dx.max(dy) > 7 && dx.max(dy) < 22 && dx.min(dy) == 0)
-    };
-    Picture::from_fn(picture.width(), picture.height(), |x, y| {
-        if around(x, y) { [20, 20, 20] } else { picture.get(x, y) }
-    })
+    let share = node.parent.map_or(1.0, |parent| node.call.weight / tree.nodes[parent].call.weight);
+    let name = format!("{} {}", k + 1, end(loaded, node));
+    [name, format!("{} {}", kind(node.call.kind).0, number(share))]
 }
 
 /// The rays seen from above, x to the right and away from the eye upwards.
-fn from_above(scene: &Scene, tree: &RayTree) -> Drawing {
-    let spheres: Vec<_> = scene.spheres.iter().map(|sphere| sphere.shape).collect();
+fn from_above(loaded: &Loaded, tree: &RayTree) -> Drawing {
+    let view = View { side: Side::Above, low: [-3.6, -3.2], high: [3.6, 3.4] };
+    let spheres: Vec<_> = loaded
+        .scene
+        .spheres
+        .iter()
+        .map(|sphere| (sphere.shape, loaded.material_names[sphere.material.0 as usize].clone()))
+        .collect();
     let rays: Vec<_> = tree
         .nodes
         .iter()
@@ -201,7 +171,7 @@ fn from_above(scene: &Scene, tree: &RayTree) -> Drawing {
                 RayEnd::Surface { position, .. } => position,
                 _ => from + 1.6 * node.call.ray.direction,
             };
-            ([from.x, -from.z], [to.x, -to.z], kind(node.call.kind).1, k + 1)
+            (from, to, kind(node.call.kind).1, k + 1)
         })
         .collect();
     let draw = move |pen: &mut Pen<'_>| {
@@ -217,34 +187,13 @@ fn from_above(scene: &Scene, tree: &RayTree) -> Drawing {
                 }
             }
         }
-        for (sphere, (name, color)) in spheres.iter().zip([
-            ("glass", category_color(4)),
-            ("mirror", category_color(5)),
-            ("plastic", category_color(0)),
-        ]) {
-            let center = [sphere.center.x, -sphere.center.z];
-            pen.circle(
-                center,
-                sphere.radius,
-                Style::fill(color.with_alpha(60)).outlined(color, 2.0),
-            );
-            pen.label(
-                [center[0], center[1] - sphere.radius],
-                [0.0, -14.0],
-                Text::new(name, TICK).color(MUTED),
-            );
+        for ((sphere, name), color) in spheres.iter().zip([4, 5, 0].map(category_color)) {
+            view.sphere(pen, sphere, name, color);
         }
         pen.label([-2.7, 3.1], [0.0, 0.0], Text::new("seen from above", LABEL).bold());
-        for (from, to, color, number) in &rays {
-            let from = [from[0], from[1].max(-3.2)];
-            pen.arrow(from, *to, Stroke::new(*color, 2.5));
-            let middle = [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])];
-            pen.label(
-                middle,
-                [0.0, 0.0],
-                Text::new(number.to_string(), LABEL).bold().color(color.for_text()),
-            );
+        for &(from, to, color, number) in &rays {
+            view.ray(pen, from, to, color, number);
         }
     };
-    Drawing::new([-3.6, -3.2], [3.6, 3.4], 560.0, draw)
+    Drawing::new(view.low, view.high, 560.0, draw)
 }

@@ -4,10 +4,9 @@ use std::hint::black_box;
 
 use glam::DVec3;
 use lancer_core::generate::icosphere;
-use lancer_core::geometry::{Interval, Ray, Shear, Slabs, Sphere, intersect_triangle};
+use lancer_core::geometry::{Interval, Ray, Slabs, Sphere};
 use lancer_core::image::ImageSize;
 use lancer_core::sampling::Uniform;
-use lancer_core::scene::Mesh;
 use lancer_core::world::SurfacePoint;
 use lancer_figure::{
     Axis, BarChart, Chart, Contender, Effort, Finished, Plate, Row, Series, Spread, Study,
@@ -16,9 +15,9 @@ use lancer_figure::{
 
 use super::acne::Site;
 use super::quadratic::far_sphere;
-use super::watertight::aimed;
+use super::watertight::{EDGES, VERTICES, aimed, leaking, triangles};
 use crate::hard_boxes::{Class, HardBox};
-use crate::naive::{BySigns, epsilon_shadow_ray, min_max_box, moeller_trumbore, textbook_sphere};
+use crate::naive::{epsilon_shadow_ray, min_max_box, textbook_sphere};
 
 /// Each kernel: what it tests, then its textbook forms and last the robust one.
 const KERNELS: [(&str, &[&str]); 4] = [
@@ -49,7 +48,12 @@ type Run<'a> = Box<dyn Fn() -> (Wrong, u64) + 'a>;
 pub fn make(effort: Effort) -> Finished {
     let mesh = icosphere(3);
     let count = effort.pick(400, 3_000);
-    let rays = [aimed(&mesh, 1, count), aimed(&mesh, 2, count)].concat();
+    let rays = [aimed(&mesh, EDGES, count), aimed(&mesh, VERTICES, count)].concat();
+    let triangles = triangles(&mesh);
+    let meshes = |test: usize| {
+        let (answers, tests) = leaking(test, &triangles, &rays);
+        (Wrong { answers, of: rays.len() }, tests)
+    };
     let (spheres, boxes) = (far_spheres(), hard_boxes());
     let sites: Vec<Site> = [0.0, 1e6]
         .into_iter()
@@ -58,19 +62,9 @@ pub fn make(effort: Effort) -> Finished {
     // Passes over inputs that stay in the caches, so that a run takes some 50 ms.
     let passes = effort.pick(1, 10);
     let runs: [Run; 9] = [
-        Box::new(|| triangles(&mesh, &rays, |ray| |corners| moeller_trumbore(corners, ray))),
-        Box::new(|| {
-            triangles(&mesh, &rays, |ray| {
-                let ray = BySigns::new(ray);
-                move |corners| ray.fused(corners)
-            })
-        }),
-        Box::new(|| {
-            triangles(&mesh, &rays, |ray| {
-                let shear = Shear::new(ray.direction);
-                move |corners| intersect_triangle(corners, ray, &shear).map(|hit| hit.t)
-            })
-        }),
+        Box::new(|| meshes(0)),
+        Box::new(|| meshes(1)),
+        Box::new(|| meshes(2)),
         Box::new(|| entered_spheres(&spheres, 100 * passes, textbook_sphere)),
         Box::new(|| {
             let enter = |sphere: Sphere, ray: &Ray| sphere.intersect(ray, Interval::POSITIVE);
@@ -168,29 +162,6 @@ pub fn make(effort: Effort) -> Finished {
             number(OFF)
         ));
     Finished { plate, data: study.table() }
-}
-
-/// Rays from inside a closed mesh, each prepared and then tested with one triangle after the other until one
-/// is met. Meeting none is wrong.
-fn triangles<'a, T: Fn([DVec3; 3]) -> Option<f64>>(
-    mesh: &Mesh,
-    rays: &'a [Ray],
-    prepare: impl Fn(&'a Ray) -> T,
-) -> (Wrong, u64) {
-    let (mut wrong, mut tests) = (0, 0);
-    for ray in rays {
-        let test = prepare(ray);
-        let mut met = None;
-        for index in 0..mesh.triangles.len() {
-            tests += 1;
-            met = test(mesh.corners(index));
-            if met.is_some() {
-                break;
-            }
-        }
-        wrong += usize::from(black_box(met).is_none());
-    }
-    (Wrong { answers: wrong, of: rays.len() }, tests)
 }
 
 /// Spheres from 10⁵ to 10⁷ radii away, each with its ray and the exact t.

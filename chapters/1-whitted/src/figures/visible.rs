@@ -268,7 +268,7 @@ const COLORS: [fn() -> Color; 4] = [
     || category_color(3),
     || category_color(5),
     || method_color("linear"),
-    || method_color("appel"),
+    || method_color("obvhs-bvh2"),
 ];
 
 /// All orders of the numbers below `count`.
@@ -374,7 +374,7 @@ pub fn make(effort: Effort) -> Finished {
     let holds = by_rays == 0.0 && best.0.min(least) > 0.0;
     let claim = format!(
         "No order of painting is right: the best of all {} leaves {:.1} % of the pixels wrong, depth sorts of \
-         random squares {least:.0} to {most:.0} %; a ray per pixel leaves {} %, for up to {dearer:.0} times \
+         random squares {least:.0} to {most:.0} %; a ray per pixel leaves {} %, for up to {dearer:.1} times \
          the tests through a tree.",
         ranked.len(),
         best.0,
@@ -383,9 +383,9 @@ pub fn make(effort: Effort) -> Finished {
     let tile = |title: &str, faces: &Faces| Tile::new(title, designed.picture(faces));
     let montage = Montage::new()
         .columns(2)
-        .tile(tile("ray casting (Appel)", &drawn[3].0).color(COLORS[3]()))
-        .tile(tile("painter, sorted by the centroids' depth", &drawn[0].0).color(COLORS[0]()))
-        .tile(tile(&format!("painter, the best of all {} orders", ranked.len()), &best.1))
+        .tile(tile("ray casting (Appel)", &drawn[3].0).color(method_color("appel")))
+        .tile(tile(&format!("painter, the worst of all {} orders", ranked.len()), &worst.1))
+        .tile(tile("painter, the best order", &best.1))
         .tile(Tile::new("white: wrong even in the best order", designed.map(&best.1)));
     let names = ["rays", "best order", "by centroid", "by farthest corner", "worst order"];
     let bars = BarChart::new("wrong pixels (%)", names).title("The five polygons above").series(

@@ -41,6 +41,9 @@ pub const MAX_COORDINATE: f64 = 1e50;
 /// The largest radiance or intensity of a file. Pictures are `f32` and end at 3e38.
 pub const MAX_RADIANCE: f64 = 1e30;
 
+/// The name of the material of faces that name none, or one that no library defines.
+pub const UNNAMED: &str = "light grey";
+
 /// The most bytes of a scene file, and of one line of an OBJ or MTL file.
 pub const MAX_BYTES: usize = 1 << 26;
 
@@ -49,6 +52,8 @@ pub const MAX_BYTES: usize = 1 << 26;
 pub struct Loaded {
     /// The scene, ready to be drawn.
     pub scene: Scene,
+    /// The name of each of the scene's materials as its file spells it; [`UNNAMED`] for faces without one.
+    pub material_names: Vec<String>,
     /// What was ignored, replaced or looks wrong, one entry per file and kind.
     pub warnings: Vec<Warning>,
     /// The file has no light: the scene's only one was put beside the camera, and belongs there when
@@ -141,7 +146,9 @@ fn load_obj(path: &Path, open: Open<'_>) -> Result<Loaded, LoadError> {
     let mut warnings = Warnings::default();
     let (mesh, materials) = obj::read_obj(path, open, &mut warnings)?;
     let mut scene = empty_scene();
-    (scene.mesh, scene.materials) = (mesh, materials);
+    scene.mesh = mesh;
+    let (names, materials) = materials.into_iter().unzip();
+    scene.materials = materials;
     scene.ambient = Rgb::splat(0.05);
     scene.background = Rgb::new(0.2, 0.25, 0.3);
     frame(&mut scene, &path.display().to_string())?;
@@ -149,7 +156,7 @@ fn load_obj(path: &Path, open: Open<'_>) -> Result<Loaded, LoadError> {
     if headlight {
         scene.lights.push(PointLight::beside(&scene.camera));
     }
-    Ok(Loaded { headlight, ..finish(scene, warnings) })
+    Ok(Loaded { headlight, ..finish(scene, names, warnings) })
 }
 
 /// A scene to be filled; its camera has no meaning yet.
@@ -178,8 +185,8 @@ fn frame(scene: &mut Scene, file: &str) -> Result<(), LoadError> {
     })
 }
 
-fn finish(scene: Scene, warnings: Warnings) -> Loaded {
-    Loaded { scene, warnings: warnings.into_vec(), headlight: false }
+fn finish(scene: Scene, material_names: Vec<String>, warnings: Warnings) -> Loaded {
+    Loaded { scene, material_names, warnings: warnings.into_vec(), headlight: false }
 }
 
 const DEFAULT_GREY: Rgb = Rgb::splat(0.75);

@@ -15,7 +15,7 @@ use crate::scene::{Material, MaterialId, Pigment};
 /// of one name.
 #[derive(Default)]
 pub(super) struct Library {
-    pub materials: Vec<Material>,
+    materials: Vec<Material>,
     names: HashMap<String, (MaterialId, String)>,
 }
 
@@ -63,6 +63,13 @@ impl Library {
 
     pub fn find(&self, name: &str) -> Option<MaterialId> {
         self.names.get(name).map(|(id, _)| *id)
+    }
+
+    /// The materials with their names, in the order in which they are numbered.
+    pub fn into_named(self) -> Vec<(String, Material)> {
+        let mut names: Vec<_> = self.names.into_iter().map(|(name, (id, _))| (id, name)).collect();
+        names.sort_unstable();
+        names.into_iter().map(|(_, name)| name).zip(self.materials).collect()
     }
 
     /// Adds the materials of an MTL file.

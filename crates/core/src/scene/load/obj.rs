@@ -8,12 +8,12 @@ use super::clean::Lines;
 use super::mtl::Library;
 use super::report::{LoadError, WarningKind, Warnings};
 use super::statements::{Record, Run, Statements};
-use super::{DEFAULT_GREY, MAX_COORDINATE, MAX_COUNT, Open};
+use super::{DEFAULT_GREY, MAX_COORDINATE, MAX_COUNT, Open, UNNAMED};
 use crate::geometry::triangulate;
 use crate::scene::counts::is_zero_area;
 use crate::scene::{Face, FaceId, Material, MaterialId, Mesh, Triangle};
 
-/// Reads an OBJ file and its material libraries.
+/// Reads an OBJ file and its material libraries; materials come with their names.
 ///
 /// tobj reads the numbers. Everything a line says beyond them (materials, groups, libraries) is
 /// kept from it and recorded, so that it returns one model whose faces share their vertices.
@@ -21,7 +21,7 @@ pub(super) fn read_obj(
     path: &Path,
     open: Open<'_>,
     warnings: &mut Warnings,
-) -> Result<(Mesh, Vec<Material>), LoadError> {
+) -> Result<(Mesh, Vec<(String, Material)>), LoadError> {
     let file = path.display().to_string();
     let source = Source { path, file: &file, open };
     let mut statements = Statements::new(&file, source.open()?, warnings)?;
@@ -57,7 +57,7 @@ fn resolve_materials(
     library: Library,
     record: &Record,
     warnings: &mut Warnings,
-) -> (Vec<Material>, Vec<MaterialId>) {
+) -> (Vec<(String, Material)>, Vec<MaterialId>) {
     let named: Vec<Option<MaterialId>> =
         record.material_names.iter().map(|(name, _)| library.find(name)).collect();
     for ((_, line), id) in record.material_names.iter().zip(&named) {
@@ -65,12 +65,12 @@ fn resolve_materials(
             warnings.add(file, *line, WarningKind::UnknownMaterial);
         }
     }
-    let mut materials = library.materials;
+    let mut materials = library.into_named();
     let found: Vec<Option<MaterialId>> =
         record.runs.iter().map(|run| run.material.and_then(|name| named[name])).collect();
     let default = MaterialId(materials.len() as u32);
     if found.contains(&None) {
-        materials.push(Material::matte(DEFAULT_GREY));
+        materials.push((UNNAMED.to_owned(), Material::matte(DEFAULT_GREY)));
     }
     (materials, found.into_iter().map(|id| id.unwrap_or(default)).collect())
 }

@@ -42,6 +42,7 @@ pub(super) fn parse(
     scene.materials =
         file.material.values().map(|table| source.material(table)).collect::<Result<_, _>>()?;
     let names: Vec<&str> = file.material.keys().map(String::as_str).collect();
+    let mut material_names: Vec<String> = file.material.keys().cloned().collect();
     for table in &file.polygon {
         let material = source.material_id(&names, &table.material)?;
         source.add_polygon(&mut scene.mesh, &table.vertices, material)?;
@@ -49,7 +50,8 @@ pub(super) fn parse(
     for table in &file.mesh {
         let material =
             table.material.as_ref().map(|name| source.material_id(&names, name)).transpose()?;
-        source.add_mesh(&mut scene, table, material, folder, open, &mut warnings)?;
+        let added = source.add_mesh(&mut scene, table, material, folder, open, &mut warnings)?;
+        material_names.extend(added);
     }
     for table in &file.sphere {
         let material = source.material_id(&names, &table.material)?;
@@ -67,7 +69,7 @@ pub(super) fn parse(
     if !scene.has_light() {
         warnings.add(name, None, WarningKind::NoLight);
     }
-    Ok(finish(scene, warnings))
+    Ok(finish(scene, material_names, warnings))
 }
 
 /// The text of a scene file, to name lines in it.
@@ -237,6 +239,7 @@ impl Source<'_> {
         Ok(())
     }
 
+    /// Adds the mesh; returns the names of the materials that it brings.
     fn add_mesh(
         &self,
         scene: &mut Scene,
@@ -245,7 +248,7 @@ impl Source<'_> {
         folder: &Path,
         open: Open<'_>,
         warnings: &mut Warnings,
-    ) -> Result<(), LoadError> {
+    ) -> Result<Vec<String>, LoadError> {
         let transform = self.transform(table)?;
         let path = beside(folder, "obj", table.obj.get_ref())
             .map_err(|problem| self.error(table.obj.span(), problem))?;
@@ -266,6 +269,7 @@ impl Source<'_> {
         for &p in &mesh.positions {
             check_point("a vertex", transform.transform_point3(p)).map_err(invalid)?;
         }
+        let mut names = Vec::new();
         let first_material = match material {
             Some(MaterialId(material)) => {
                 for face in &mut mesh.faces {
@@ -275,12 +279,15 @@ impl Source<'_> {
             }
             None => {
                 let first = scene.materials.len() as u32;
-                scene.materials.extend(materials);
+                for (name, material) in materials {
+                    names.push(name);
+                    scene.materials.push(material);
+                }
                 first
             }
         };
         scene.mesh.append(&mesh, transform, first_material);
-        Ok(())
+        Ok(names)
     }
 
     /// Scale, then turn about x, y and z in this order, then move.

@@ -207,3 +207,24 @@ fn latin_1_names_match() {
     let loaded = load_from(&files, "a.obj").expect("fine");
     assert_eq!(loaded.scene.materials, [Material::matte(Rgb::new(1.0, 0.0, 0.0))]);
 }
+
+#[test]
+fn materials_keep_their_names() {
+    let model = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nusemtl <b> & c\nf 1 2 3\n";
+    let scene = "material.z.rho_d = 1\nmaterial.a.rho_d = 0.5\n[[mesh]]\nobj = 'a.obj'\n\
+                 [[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'z'\n";
+    let files: [(&str, &[u8]); 3] = [
+        ("s.toml", scene.as_bytes()),
+        ("a.obj", model.as_bytes()),
+        ("a.mtl", b"newmtl zinc\nKd 0.1\nnewmtl <b> & c\nKd 0.2\n"),
+    ];
+    let all = |loaded: &Loaded| -> Vec<(String, Material)> {
+        loaded.material_names.iter().cloned().zip(loaded.scene.materials.iter().copied()).collect()
+    };
+    let named = |name: &str, grey: f64| (name.to_owned(), Material::matte(Rgb::splat(grey)));
+    let of_model = [named("zinc", 0.1), named("<b> & c", 0.2), named(UNNAMED, 0.75)];
+    let loaded = load_from(&files, "a.obj").expect("fine");
+    assert_eq!(all(&loaded), of_model);
+    let loaded = load_from(&files, "s.toml").expect("fine");
+    assert_eq!(all(&loaded), [&[named("a", 0.5), named("z", 1.0)][..], &of_model].concat());
+}

@@ -1,0 +1,344 @@
+//! E1.1: the ray through a film point.
+
+use glam::DVec3;
+use lancer_core::Rgb;
+use lancer_core::geometry::{Interval, Ray};
+use lancer_core::image::{Image, ImageSize};
+use lancer_core::intersector::{Intersector, LinearScan};
+use lancer_core::scene::Camera;
+use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, within};
+
+use super::reference::primary_ray;
+use super::{Subject, painted};
+use crate::scenes;
+
+pub const EXERCISE: Exercise<Subject> = Exercise {
+    card: Card {
+        id: "E1.1",
+        name: "primary-ray",
+        title: "The ray through a film point",
+        slide: "Principe géométrique : ligne œil-pixel",
+        file: "e01_primary_ray.rs",
+        stub: include_str!("../../stubs/e01_primary_ray.rs"),
+        functions: &["primary_ray"],
+        minutes: 20,
+        predict: "the eye stands above a checkered floor with a red ball on the left and a green one on the \
+                  right, and the picture is wider than high: at which height is the horizon, and what \
+                  would the balls be if pixels were not square?",
+        vary: "halve the opening angle in your function (`0.5 * camera.fov`): what happens to the balls, and \
+               does the horizon move?",
+        hints: [
+            "Build a frame at the eye: forward, right and up, unit and at right angles. The film is a \
+             window at distance 1 ahead; how high is it if its opening angle is known?",
+            "forward F = (look_at − eye)/|…|, right = F × up/|…|, true up = right × F. The film's half \
+             height is h = tan(fov/2), so a pixel's side is p = 2h / height, and the direction is \
+             F + p (x − width/2) right − p (y − height/2) up, made unit.",
+            "`let forward = (camera.look_at - camera.eye).normalize();` \
+             `let right = forward.cross(camera.up).normalize();` `let up = right.cross(forward);` \
+             `let pixel = 2.0 * (0.5 * camera.fov.to_radians()).tan() / f64::from(size.height);` then add up \
+             the three parts, `.normalize()`, and `Ray::new(camera.eye, …)`.",
+        ],
+        solution: Solution {
+            file: "crates/core/src/scene/camera.rs",
+            item: "impl PrimaryRays",
+            notice: "the corner, the step to the right and the step down are worked out once per picture, so \
+                     that a ray costs two multiplications and an addition of vectors, and a root",
+        },
+    },
+    checks: &[
+        Check { name: "the middle of the picture", run: middle },
+        Check { name: "the middle of the upper edge", run: upper_edge },
+        Check { name: "the middle of the right edge", run: right_edge },
+        Check { name: "another opening angle", run: opening_angle },
+        Check { name: "a turned camera, by hand", run: turned },
+    ],
+    mutants: &[
+        Mutant {
+            says: "the picture is upside down: y counts downwards from the upper edge",
+            caught_by: "the middle of the upper edge",
+            mistake: |subject| {
+                subject.primary_ray =
+                    |camera, size, x, y| primary_ray(camera, size, x, f64::from(size.height) - y);
+            },
+        },
+        Mutant {
+            says: "left and right are exchanged: to the right is forward × up, in this order",
+            caught_by: "the middle of the right edge",
+            mistake: |subject| {
+                subject.primary_ray =
+                    |camera, size, x, y| primary_ray(camera, size, f64::from(size.width) - x, y);
+            },
+        },
+        Mutant {
+            says: "the picture is turned by half: both signs are wrong",
+            caught_by: "the middle of the right edge",
+            mistake: |subject| {
+                subject.primary_ray = |camera, size, x, y| {
+                    let (width, height) = (f64::from(size.width), f64::from(size.height));
+                    primary_ray(camera, size, width - x, height - y)
+                };
+            },
+        },
+        Mutant {
+            says: "the opening angle is taken as horizontal: it is the vertical one, so a pixel's side is \
+                   2 tan(fov/2) over the height",
+            caught_by: "the middle of the upper edge",
+            mistake: |subject| {
+                subject.primary_ray = |camera, size, x, y| {
+                    let aspect = f64::from(size.height) / f64::from(size.width);
+                    zoomed(camera, aspect * tan_half(camera), size, x, y)
+                };
+            },
+        },
+        Mutant {
+            says: "the whole opening angle is taken: the film's half height is the tangent of half of it",
+            caught_by: "the middle of the upper edge",
+            mistake: |subject| {
+                subject.primary_ray =
+                    |camera, size, x, y| zoomed(camera, camera.fov.to_radians().tan(), size, x, y);
+            },
+        },
+        Mutant {
+            says: "the opening angle is in degrees, and the tangent wants radians: `to_radians()`",
+            caught_by: "the middle of the upper edge",
+            mistake: |subject| {
+                subject.primary_ray =
+                    |camera, size, x, y| zoomed(camera, (0.5 * camera.fov).tan(), size, x, y);
+            },
+        },
+        Mutant {
+            says: "the film is twice too small: from the middle to the edge it is tan(fov/2), from edge to \
+                   edge twice that",
+            caught_by: "the middle of the upper edge",
+            mistake: |subject| {
+                subject.primary_ray =
+                    |camera, size, x, y| zoomed(camera, 0.5 * tan_half(camera), size, x, y);
+            },
+        },
+        Mutant {
+            says: "pixels are not square: the film is as wide as high whatever the picture's shape; its \
+                   width is width/height times its height",
+            caught_by: "the middle of the right edge",
+            mistake: |subject| {
+                subject.primary_ray = |camera, size, x, y| {
+                    let (width, height) = (f64::from(size.width), f64::from(size.height));
+                    let squeezed = 0.5 * width + (x - 0.5 * width) * height / width;
+                    primary_ray(camera, size, squeezed, y)
+                };
+            },
+        },
+        Mutant {
+            says: "the direction is not unit: normalise the sum",
+            caught_by: "the middle of the upper edge",
+            mistake: |subject| {
+                subject.primary_ray = |camera, size, x, y| {
+                    let ray = primary_ray(camera, size, x, y);
+                    let forward = (camera.look_at - camera.eye).normalize();
+                    Ray::new(ray.origin, ray.direction / forward.dot(ray.direction))
+                };
+            },
+        },
+        Mutant {
+            says: "half a pixel is added: x and y are the film point itself, not a pixel's column and row",
+            caught_by: "the middle of the picture",
+            mistake: |subject| {
+                subject.primary_ray =
+                    |camera, size, x, y| primary_ray(camera, size, x + 0.5, y + 0.5);
+            },
+        },
+        Mutant {
+            says: "camera.up is used as it comes: it need not be perpendicular to the view axis, so the \
+                   film's own up is right × forward",
+            caught_by: "a turned camera, by hand",
+            mistake: |subject| {
+                subject.primary_ray = |camera, size, x, y| {
+                    let forward = (camera.look_at - camera.eye).normalize();
+                    let up = camera.up.normalize();
+                    through(camera, [forward, forward.cross(up).normalize(), up], size, x, y)
+                };
+            },
+        },
+        Mutant {
+            says: "forward × up is not made unit: camera.up need not be perpendicular to the view axis",
+            caught_by: "a turned camera, by hand",
+            mistake: |subject| {
+                subject.primary_ray = |camera, size, x, y| {
+                    let forward = (camera.look_at - camera.eye).normalize();
+                    let right = forward.cross(camera.up);
+                    through(camera, [forward, right, right.cross(forward)], size, x, y)
+                };
+            },
+        },
+        Mutant {
+            says: "look_at − eye is not made unit: right is, so the picture narrows with the distance of the \
+                   point looked at",
+            caught_by: "another opening angle",
+            mistake: |subject| {
+                subject.primary_ray = |camera, size, x, y| {
+                    let forward = camera.look_at - camera.eye;
+                    let right = forward.cross(camera.up).normalize();
+                    through(camera, [forward, right, right.cross(forward)], size, x, y)
+                };
+            },
+        },
+        Mutant {
+            says: "the film is not at distance 1 but at that of look_at, though its size is not",
+            caught_by: "another opening angle",
+            mistake: |subject| {
+                subject.primary_ray = |camera, size, x, y| {
+                    let away = camera.look_at.distance(camera.eye);
+                    zoomed(camera, tan_half(camera) / away, size, x, y)
+                };
+            },
+        },
+        Mutant {
+            says: "pixels are not square: the film is height/width as wide as high, where it should be \
+                   width/height",
+            caught_by: "the middle of the right edge",
+            mistake: |subject| {
+                subject.primary_ray = |camera, size, x, y| {
+                    let (width, height) = (f64::from(size.width), f64::from(size.height));
+                    let aspect = height / width;
+                    let squeezed = 0.5 * width + (x - 0.5 * width) * aspect * aspect;
+                    primary_ray(camera, size, squeezed, y)
+                };
+            },
+        },
+        Mutant {
+            says: "the ray looks backwards: from the eye to the film is look_at − eye, not eye − look_at",
+            caught_by: "the middle of the picture",
+            mistake: |subject| {
+                subject.primary_ray = |camera, size, x, y| {
+                    let behind = Camera { look_at: 2.0 * camera.eye - camera.look_at, ..*camera };
+                    primary_ray(&behind, size, x, y)
+                };
+            },
+        },
+    ],
+    draw,
+    explain: None,
+};
+
+/// The film's half height at distance 1.
+fn tan_half(camera: &Camera) -> f64 {
+    (0.5 * camera.fov.to_radians()).tan()
+}
+
+/// The ray through a film of another half height at distance 1.
+fn zoomed(camera: &Camera, half_height: f64, size: ImageSize, x: f64, y: f64) -> Ray {
+    let forward = (camera.look_at - camera.eye).normalize();
+    let right = forward.cross(camera.up).normalize();
+    let zoom = half_height / tan_half(camera);
+    through(camera, [forward, zoom * right, zoom * right.cross(forward)], size, x, y)
+}
+
+/// The ray through a film with another frame: forward, right and up.
+fn through(
+    camera: &Camera,
+    [forward, right, up]: [DVec3; 3],
+    size: ImageSize,
+    x: f64,
+    y: f64,
+) -> Ray {
+    let (width, height) = (f64::from(size.width), f64::from(size.height));
+    let pixel = 2.0 * tan_half(camera) / height;
+    let aside = (x - 0.5 * width) * right - (y - 0.5 * height) * up;
+    Ray::new(camera.eye, (forward + pixel * aside).normalize())
+}
+
+/// Along −z with y up: the film at distance 1 is 2 high and 4 wide.
+const PLAIN: Camera = Camera { eye: DVec3::ZERO, look_at: DVec3::NEG_Z, up: DVec3::Y, fov: 90.0 };
+/// Two rows of four pixels.
+const WIDE: (u32, u32) = (4, 2);
+
+/// The eye, and the axes of the film: (2, 3, 6)/7 forward, (−6, −2, 3)/7 to the right, (−3, 6, −2)/7 up.
+/// Its `up` is 7 times the latter and 7 times forward, and neither is `look_at` at distance 1.
+const TURNED: Camera = Camera {
+    eye: DVec3::new(1.0, -2.0, 3.0),
+    look_at: DVec3::new(5.0, 4.0, 15.0),
+    up: DVec3::new(-1.0, 9.0, 4.0),
+    fov: 90.0,
+};
+
+fn compare(
+    subject: &Subject,
+    camera: &Camera,
+    (width, height): (u32, u32),
+    (x, y): (f64, f64),
+    direction: DVec3,
+) -> Result<(), Mismatch> {
+    let case = || {
+        let Camera { eye, look_at, up, fov } = camera;
+        format!(
+            "eye {}, look_at {}, up {}, vertical fov {}°, {width} × {height} pixels, film point \
+             ({x} to the right, {y} down)",
+            eye.shown(),
+            look_at.shown(),
+            up.shown(),
+            fov.shown(),
+        )
+    };
+    let got = (subject.primary_ray)(camera, ImageSize::new(width, height), x, y);
+    within(1e-14, case, &got, &Ray::new(camera.eye, direction))
+}
+
+fn middle(subject: &Subject) -> Result<(), Mismatch> {
+    compare(subject, &PLAIN, WIDE, (2.0, 1.0), DVec3::NEG_Z)?;
+    compare(subject, &TURNED, WIDE, (2.0, 1.0), DVec3::new(2.0, 3.0, 6.0) / 7.0)
+}
+
+fn upper_edge(subject: &Subject) -> Result<(), Mismatch> {
+    let up_and_ahead = DVec3::new(0.0, 1.0, -1.0) / 2.0_f64.sqrt();
+    compare(subject, &PLAIN, WIDE, (2.0, 0.0), up_and_ahead)
+}
+
+fn right_edge(subject: &Subject) -> Result<(), Mismatch> {
+    // The film is as far from its middle to the right edge as it is high.
+    let right_and_ahead = DVec3::new(2.0, 0.0, -1.0) / 5.0_f64.sqrt();
+    compare(subject, &PLAIN, WIDE, (4.0, 1.0), right_and_ahead)
+}
+
+/// tan(fov/2) = 3/4: a pixel's side is 3/4 with two rows.
+fn opening_angle(subject: &Subject) -> Result<(), Mismatch> {
+    let fov = 2.0 * 0.75_f64.atan().to_degrees();
+    let camera = Camera { fov, look_at: DVec3::new(0.0, 0.0, -10.0), ..PLAIN };
+    // The centre of a pixel: from the middle half a pixel to the left and half a one up.
+    let direction = DVec3::new(-0.375, 0.375, -1.0).normalize();
+    compare(subject, &camera, WIDE, (1.5, 0.5), direction)
+}
+
+/// A pixel's side is 1/3 with six rows: (7, 2) is one to the right and 1/3 up on a film eight pixels wide.
+/// (2, 3, 6) + (−6, −2, 3) + (−3, 6, −2)/3 = (−5, 3, 25/3), which is (−15, 9, 25)/3.
+fn turned(subject: &Subject) -> Result<(), Mismatch> {
+    let direction = DVec3::new(-15.0, 9.0, 25.0) / 931.0_f64.sqrt();
+    compare(subject, &TURNED, (8, 6), (7.0, 2.0), direction)
+}
+
+/// A floor and two balls before a sky, by the subject's rays. The sky is lighter the higher it is.
+fn draw(subject: &Subject) -> Image {
+    let scene = scenes::parsed("floor", FLOOR);
+    let size = ImageSize::new(288, 192);
+    let oracle = LinearScan::new(&scene);
+    painted(size, |x, y| {
+        let ray = (subject.primary_ray)(&scene.camera, size, x, y);
+        let Some(hit) = oracle.closest_hit(&ray, Interval::POSITIVE) else {
+            return Rgb::new(0.25, 0.4, 0.7) * (1.0 + 2.0 * ray.direction.y);
+        };
+        let surface = scene.surface_at(&ray, &hit);
+        let n = surface.shading_normal;
+        let color = scene.material(surface.material).rho_d.at(surface.position, n);
+        color * (0.6 + 0.4 * n.dot(DVec3::new(-0.48, 0.8, 0.36)))
+    })
+}
+
+const FLOOR: &str = "
+    camera = { eye = [0, 2.2, 7], look_at = [0, 1, 0], fov = 40 }
+    material.floor = { rho_d = { checker = [[0.75, 0.75, 0.7], [0.12, 0.12, 0.14]], side = 1 } }
+    material.red = { rho_d = [0.8, 0.06, 0.04] }
+    material.green = { rho_d = [0.06, 0.55, 0.08] }
+    light = [{ position = [0, 9, 5], intensity = 1 }]
+    polygon = [{ vertices = [[-40, 0, 9], [40, 0, 9], [40, 0, -80], [-40, 0, -80]], material = 'floor' }]
+    sphere = [
+        { center = [-2.2, 1, 0], radius = 1, material = 'red' },
+        { center = [1.9, 0.6, 1.2], radius = 0.6, material = 'green' },
+    ]";

@@ -1,0 +1,458 @@
+//! E1.8: the recursion LR.
+
+use glam::DVec3;
+use lancer_core::Rgb;
+use lancer_core::geometry::Ray;
+use lancer_core::image::{Image, ImageSize};
+use lancer_core::scene::Scene;
+use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, within};
+use lancer_whitted::{RayEnd, RayNode};
+
+use super::{Stage, Subject, from_eye, painted, reference, title_rays};
+use crate::scenes;
+
+pub const EXERCISE: Exercise<Subject> = Exercise {
+    card: Card {
+        id: "E1.8",
+        name: "lr",
+        title: "The recursion LR",
+        slide: "Algorithme",
+        file: "e08_lr.rs",
+        stub: include_str!("../../stubs/e08_lr.rs"),
+        functions: &["lr"],
+        minutes: 45,
+        predict: "the chapter's title picture, by all of your functions: what is seen in the mirror ball where it \
+                  faces you, and which way up is the floor in the glass ball?",
+        vary: "let your function trace both rays even where k_s or k_t is 0: the picture stays the same, so what \
+               changes?",
+        hints: [
+            "One call answers for one ray. First the two ends, Max_Prof and the background; then I_Local by a loop \
+             over the lamps; then one call for each ray that the surface sends on, with depth + 1.",
+            "eq:recursion: I_R = I_Local + k_s I_Refl + k_t I_Trans, product by product in each channel. The ray \
+             enters if geometric_normal · direction < 0: then n₁ = 1 and n₂ is the material's; else they change \
+             places.",
+            "For each lamp: `let shadow = shadow_ray(&surface, lamp.position);`, distance = its direction's length, \
+             L = its direction / distance, then `local_light(lamp.intensity_towards(l), stage.is_lit(&shadow), \
+             distance, &stage.reflectance(&surface), n, l, -ray.direction)`. Then `match refracted_ray(…)`: `Some(t)` \
+             adds `material.k_t * lr(stage, &surface.spawn(t), depth + 1)`, `None` adds k_t to the k_s of the mirror \
+             ray.",
+        ],
+        solution: Solution {
+            file: "crates/whitted/src/trace.rs",
+            item: "fn at_surface",
+            notice: "no ray is traced for a share of 0, and no shadow ray is cast to a lamp that would add nothing",
+        },
+    },
+    checks: &[
+        Check { name: "nothing is met", run: background },
+        Check { name: "Max_Prof", run: beyond },
+        Check { name: "a matte floor under a lamp", run: matte },
+        Check { name: "its highlight, in the mirror direction", run: shiny },
+        Check { name: "the ambient light", run: ambient },
+        Check { name: "a lamp behind a ball, and one beside it", run: shadow },
+        Check { name: "a plate that glows on one side", run: emission },
+        Check { name: "a mirror shows the plate", run: mirror },
+        Check { name: "two mirrors face each other", run: facing_mirrors },
+        Check { name: "a ball of index 1 is not there", run: no_ball },
+        Check { name: "into a glass ball and out of it", run: glass_ball },
+        Check { name: "total reflection", run: total_reflection },
+        Check { name: "the title picture", run: title },
+    ],
+    mutants: &[
+        Mutant {
+            says: "the three components are added as on the slide's last line: k_s and k_t are missing",
+            caught_by: "a mirror shows the plate",
+            mistake: |subject| {
+                subject.lr = |stage, ray, depth| slipped(Slip::NoShares, stage, ray, depth);
+            },
+        },
+        Mutant {
+            says: "the ambient term ρ_d I_a is missing: shadows are black",
+            caught_by: "the ambient light",
+            mistake: |subject| {
+                subject.lr = |stage, ray, depth| slipped(Slip::NoAmbient, stage, ray, depth);
+            },
+        },
+        Mutant {
+            says: "the emission ε is missing: lamps shine, but are black themselves",
+            caught_by: "a plate that glows on one side",
+            mistake: |subject| {
+                subject.lr = |stage, ray, depth| slipped(Slip::NoEmission, stage, ray, depth);
+            },
+        },
+        Mutant {
+            says: "the emission is sent to both sides: only the outside of a surface glows",
+            caught_by: "a plate that glows on one side",
+            mistake: |subject| {
+                subject.lr = |stage, ray, depth| slipped(Slip::TwoSided, stage, ray, depth);
+            },
+        },
+        Mutant {
+            says: "a ray that meets nothing is black: « couleur de fond » is missing",
+            caught_by: "nothing is met",
+            mistake: |subject| {
+                subject.lr = |stage, ray, depth| slipped(Slip::NoBackground, stage, ray, depth);
+            },
+        },
+        Mutant {
+            says: "the recursion ends one bounce early: a ray at Max_Prof is still traced, one beyond is not",
+            caught_by: "Max_Prof",
+            mistake: |subject| {
+                subject.lr = |stage, ray, depth| slipped(Slip::EarlyEnd, stage, ray, depth);
+            },
+        },
+        Mutant {
+            says: "the depth does not grow: nothing ends the recursion between two mirrors",
+            caught_by: "two mirrors face each other",
+            mistake: |subject| {
+                subject.lr = |stage, ray, depth| slipped(Slip::SameDepth, stage, ray, depth);
+            },
+        },
+        Mutant {
+            says: "the shadow rays are not asked: every lamp is taken as visible",
+            caught_by: "a lamp behind a ball, and one beside it",
+            mistake: |subject| {
+                subject.lr = |stage, ray, depth| slipped(Slip::NoShadows, stage, ray, depth);
+            },
+        },
+        Mutant {
+            says: "V is the ray's own direction: the highlight needs the direction to the eye, −direction",
+            caught_by: "its highlight, in the mirror direction",
+            mistake: |subject| {
+                subject.lr = |stage, ray, depth| slipped(Slip::TowardsSurface, stage, ray, depth);
+            },
+        },
+        Mutant {
+            says: "every surface is entered: where the ray leaves the glass, n₁ and n₂ change places",
+            caught_by: "into a glass ball and out of it",
+            mistake: |subject| {
+                subject.lr = |stage, ray, depth| slipped(Slip::AlwaysEntering, stage, ray, depth);
+            },
+        },
+        Mutant {
+            says: "at total reflection the share k_t is lost: it goes to the mirror ray",
+            caught_by: "total reflection",
+            mistake: |subject| {
+                subject.lr = |stage, ray, depth| slipped(Slip::LostShare, stage, ray, depth);
+            },
+        },
+    ],
+    draw,
+    explain: Some(explain),
+};
+
+#[derive(Clone, Copy, PartialEq)]
+enum Slip {
+    NoShares,
+    NoAmbient,
+    NoEmission,
+    TwoSided,
+    NoBackground,
+    EarlyEnd,
+    SameDepth,
+    NoShadows,
+    TowardsSurface,
+    AlwaysEntering,
+    LostShare,
+}
+
+/// LR with one slip.
+fn slipped(slip: Slip, stage: &Stage, ray: &Ray, depth: u32) -> Rgb {
+    let scene = stage.scene;
+    if depth > stage.max_depth || slip == Slip::EarlyEnd && depth == stage.max_depth {
+        return Rgb::ZERO;
+    }
+    let Some(surface) = stage.surface(ray) else {
+        return if slip == Slip::NoBackground { Rgb::ZERO } else { scene.background };
+    };
+    let incident = ray.direction;
+    let (material, reflectance) = (scene.material(surface.material), stage.reflectance(&surface));
+    let is_outside = surface.geometric_normal.dot(incident) < 0.0;
+    let mut radiance = Rgb::ZERO;
+    if slip != Slip::NoAmbient {
+        radiance += reflectance.diffuse * scene.ambient;
+    }
+    if slip != Slip::NoEmission && (is_outside || slip == Slip::TwoSided) {
+        radiance += material.emission;
+    }
+    let n = surface.shading_normal_towards(-incident);
+    let to_eye = if slip == Slip::TowardsSurface { incident } else { -incident };
+    for lamp in &stage.lamps {
+        let shadow = reference::shadow_ray(&surface, lamp.position);
+        let (l, distance) = shadow.direction.normalize_and_length();
+        let is_lit = slip == Slip::NoShadows || stage.is_lit(&shadow);
+        let intensity = lamp.intensity_towards(l);
+        radiance += reference::local_light(intensity, is_lit, distance, &reflectance, n, l, to_eye);
+    }
+    let sent = |k: Rgb, direction: DVec3| {
+        let depth = if slip == Slip::SameDepth { depth } else { depth + 1 };
+        let share = if slip == Slip::NoShares { Rgb::ONE } else { k };
+        share * slipped(slip, stage, &surface.spawn(direction), depth)
+    };
+    let (n, index) = (surface.optical_normal(incident), material.refractive_index);
+    let (n1, n2) =
+        if is_outside || slip == Slip::AlwaysEntering { (1.0, index) } else { (index, 1.0) };
+    let mut k_s = material.k_s;
+    if material.k_t != Rgb::ZERO {
+        match reference::refracted_ray(incident, n, n1, n2) {
+            Some(direction) => radiance += sent(material.k_t, direction),
+            None if slip == Slip::LostShare => (),
+            None => k_s += material.k_t,
+        }
+    }
+    if k_s != Rgb::ZERO {
+        radiance += sent(k_s, reference::reflected_ray(incident, n));
+    }
+    radiance
+}
+
+/// Judges a ray from the eye in a scene, given as a text and in words. The shapes are met by the course's own
+/// functions: what is wrong is in LR, or in a function that it calls.
+fn compare(
+    subject: &Subject,
+    text: &str,
+    words: &str,
+    ray: Ray,
+    max_depth: u32,
+    wanted: Rgb,
+) -> Result<(), Mismatch> {
+    let scene = scenes::parsed("exercise", text);
+    let got = (subject.lr)(&Stage::new(&scene, max_depth, reference::SUBJECT), &ray, 0);
+    within(1e-10, || format!("{words}; {}, Max_Prof {max_depth}", ray.shown()), &got, &wanted)
+}
+
+const SKY: Rgb = Rgb::new(0.2, 0.3, 0.4);
+const BALL_BEHIND: &str = "
+    background = [0.2, 0.3, 0.4]
+    material.ball = { rho_d = 1 }
+    sphere = [{ center = [0, 0, 9], radius = 1, material = 'ball' }]";
+
+fn background(subject: &Subject) -> Result<(), Mismatch> {
+    let ray = Ray::new(DVec3::ZERO, DVec3::NEG_Z);
+    compare(subject, BALL_BEHIND, "a background (0.2, 0.3, 0.4), a ball behind", ray, 5, SKY)
+}
+
+fn beyond(subject: &Subject) -> Result<(), Mismatch> {
+    let scene = scenes::parsed("exercise", BALL_BEHIND);
+    let ray = Ray::new(DVec3::ZERO, DVec3::NEG_Z);
+    for (depth, wanted) in [(3, Rgb::ZERO), (2, SKY)] {
+        let got = (subject.lr)(&Stage::new(&scene, 2, reference::SUBJECT), &ray, depth);
+        let case = || {
+            format!(
+                "the background (0.2, 0.3, 0.4) seen by a call of depth {depth}, and Max_Prof is 2"
+            )
+        };
+        within(1e-10, case, &got, &wanted)?;
+    }
+    Ok(())
+}
+
+const FLOOR: &str = "
+    material.floor = { rho_d = [0.5, 0.25, 1] }
+    polygon = [{ vertices = [[-9, 0, 9], [9, 0, 9], [9, 0, -9], [-9, 0, -9]], material = 'floor' }]";
+const DIFFUSE: Rgb = Rgb::new(0.5, 0.25, 1.0);
+
+/// From (3, 4, 0) down to the origin.
+fn to_origin() -> Ray {
+    Ray::new(DVec3::new(3.0, 4.0, 0.0), DVec3::new(-0.6, -0.8, 0.0))
+}
+
+fn matte(subject: &Subject) -> Result<(), Mismatch> {
+    // 8 / 2² straight from above; 50 / 5² with the cosine 4/5.
+    for (lamp, words, light) in [
+        ("{ position = [0, 2, 0], intensity = 8 }", "a lamp of 8 at (0, 2, 0)", 2.0),
+        ("{ position = [-3, 4, 0], intensity = 50 }", "a lamp of 50 at (−3, 4, 0)", 1.6),
+    ] {
+        let text = format!("light = [{lamp}]\n{FLOOR}");
+        let words = format!("a floor y = 0, ρ_d = (0.5, 0.25, 1), {words}");
+        compare(subject, &text, &words, to_origin(), 5, light * DIFFUSE)?;
+    }
+    Ok(())
+}
+
+/// The lamp stands where the eye's ray is mirrored to, so R·V = 1 and the highlight is ρ_s.
+fn shiny(subject: &Subject) -> Result<(), Mismatch> {
+    let text = "
+        light = [{ position = [-3, 4, 0], intensity = 50 }]
+        material.floor = { rho_d = [0.5, 0.25, 1], rho_s = 0.25, shininess = 20 }
+        polygon = [{ vertices = [[-9, 0, 9], [9, 0, 9], [9, 0, -9], [-9, 0, -9]], material = 'floor' }]";
+    let words = "a floor y = 0, ρ_d = (0.5, 0.25, 1), ρ_s = 0.25, n = 20, a lamp of 50 at (−3, 4, 0) in the mirror \
+                 direction";
+    compare(subject, text, words, to_origin(), 5, 2.0 * (0.8 * DIFFUSE + 0.25))
+}
+
+fn ambient(subject: &Subject) -> Result<(), Mismatch> {
+    let text = format!("ambient = [0.1, 0.2, 0.4]\n{FLOOR}");
+    let words = "a floor y = 0, ρ_d = (0.5, 0.25, 1), I_a = (0.1, 0.2, 0.4), no lamp";
+    compare(subject, &text, words, to_origin(), 5, DIFFUSE * Rgb::new(0.1, 0.2, 0.4))
+}
+
+fn shadow(subject: &Subject) -> Result<(), Mismatch> {
+    let text = format!(
+        "light = [
+            {{ position = [0, 2, 0], intensity = 8 }}, {{ position = [-3, 4, 0], intensity = 50 }}]
+        sphere = [{{ center = [0, 1, 0], radius = 0.25, material = 'floor' }}]
+        {FLOOR}"
+    );
+    let words = "a floor y = 0, ρ_d = (0.5, 0.25, 1), lamps of 8 at (0, 2, 0) and of 50 at (−3, 4, 0), a ball of \
+                 radius 0.25 at (0, 1, 0)";
+    compare(subject, &text, words, to_origin(), 5, 1.6 * DIFFUSE)
+}
+
+const PLATE: &str = "
+    material.plate = { emission = [2, 4, 0.5] }
+    material.mirror = { k_s = [0.5, 0.25, 1] }";
+const GLOW: Rgb = Rgb::new(2.0, 4.0, 0.5);
+/// The plate x = 3, 3 < y < 5, |z| < 1, whose outside faces −x.
+const PLATE_AT_3: &str =
+    "{ vertices = [[3, 3, -1], [3, 3, 1], [3, 5, 1], [3, 5, -1]], material = 'plate' }";
+
+fn emission(subject: &Subject) -> Result<(), Mismatch> {
+    let text = format!("polygon = [{PLATE_AT_3}]\n{PLATE}");
+    for (from, direction, wanted, side) in
+        [(0.0, DVec3::X, GLOW, "outside"), (6.0, DVec3::NEG_X, Rgb::ZERO, "inside")]
+    {
+        let words = format!("a plate at x = 3, ε = (2, 4, 0.5), seen from its {side}");
+        let ray = Ray::new(DVec3::new(from, 4.0, 0.0), direction);
+        compare(subject, &text, &words, ray, 5, wanted)?;
+    }
+    Ok(())
+}
+
+fn mirror(subject: &Subject) -> Result<(), Mismatch> {
+    let text = format!(
+        "polygon = [{PLATE_AT_3},
+            {{ vertices = [[-1, 0, 1], [1, 0, 1], [1, 0, -1], [-1, 0, -1]], material = 'mirror' }}]
+        {PLATE}"
+    );
+    let words =
+        "a mirror y = 0, k_s = (0.5, 0.25, 1), shows a plate around (3, 4, 0), ε = (2, 4, 0.5)";
+    let ray = Ray::new(DVec3::new(-3.0, 4.0, 0.0), DVec3::new(0.6, -0.8, 0.0));
+    compare(subject, &text, words, ray, 5, GLOW * Rgb::new(0.5, 0.25, 1.0))
+}
+
+/// Each of the Max_Prof + 1 surfaces adds ρ_d I_a = ½, the next one half as much: 1 − ½^(Max_Prof + 1).
+fn facing_mirrors(subject: &Subject) -> Result<(), Mismatch> {
+    let text = "
+        ambient = 1
+        material.mirror = { rho_d = 0.5, k_s = 0.5 }
+        polygon = [
+            { vertices = [[1, -1, -1], [1, -1, 1], [1, 1, 1], [1, 1, -1]], material = 'mirror' },
+            { vertices = [[-1, -1, 1], [-1, -1, -1], [-1, 1, -1], [-1, 1, 1]], material = 'mirror' }]";
+    let words = "mirrors x = −1 and x = 1, k_s = 0.5, ρ_d = 0.5, I_a = 1";
+    for max_depth in 0..5 {
+        let wanted = Rgb::splat(1.0 - 0.5_f64.powi(max_depth + 1));
+        let ray = Ray::new(DVec3::ZERO, DVec3::X);
+        compare(subject, text, words, ray, max_depth as u32, wanted)?;
+    }
+    Ok(())
+}
+
+fn no_ball(subject: &Subject) -> Result<(), Mismatch> {
+    let text = "
+        background = [0.2, 0.3, 0.4]
+        material.air = { k_t = 1, refractive_index = 1 }
+        sphere = [{ center = [0, 0, 0], radius = 1, material = 'air' }]";
+    let words =
+        "a ball of radius 1, k_t = 1, refractive index 1, before a background (0.2, 0.3, 0.4)";
+    let ray = Ray::new(DVec3::new(0.6, 0.0, 3.0), DVec3::NEG_Z);
+    compare(subject, text, words, ray, 5, SKY)
+}
+
+/// A ray along −z meets a glass ball of radius 1 at x = 3/5, so sin θ₁ = 3/5 and sin θ₂ = 2/5. It passes along
+/// the chord, which is 2 cos θ₂ long, and leaves bent by 2 (θ₁ − θ₂) towards the axis, from the point at the angle
+/// θ₁ + π − 2 θ₂ around the ball's centre.
+fn glass_ball(subject: &Subject) -> Result<(), Mismatch> {
+    let (theta1, theta2) = (0.6_f64.asin(), 0.4_f64.asin());
+    let (out_x, out_z) = (theta1 + std::f64::consts::PI - 2.0 * theta2).sin_cos();
+    let x = out_x - (out_z + 3.0) * (2.0 * (theta1 - theta2)).tan();
+    let (left, right) = (x - 0.05, x + 0.05);
+    let text = format!(
+        "{PLATE}
+        material.glass = {{ k_t = [0.5, 1, 1], refractive_index = 1.5 }}
+        sphere = [{{ center = [0, 0, 0], radius = 1, material = 'glass' }}]
+        polygon = [{{
+            vertices = [[{left}, -1, -3], [{right}, -1, -3], [{right}, 1, -3], [{left}, 1, -3]],
+            material = 'plate' }}]"
+    );
+    let words = format!(
+        "a glass ball of radius 1, refractive index 1.5, k_t = (0.5, 1, 1), before a plate {} < x < {}, z = −3, \
+         ε = (2, 4, 0.5)",
+        left.shown(),
+        right.shown()
+    );
+    let ray = Ray::new(DVec3::new(0.6, 0.0, 3.0), DVec3::NEG_Z);
+    compare(subject, &text, &words, ray, 5, GLOW * Rgb::new(0.25, 1.0, 1.0))
+}
+
+/// From within glass at 45 degrees, where the sine 0.707 is above 2/3: k_s + k_t = 3/4 goes to the plate.
+fn total_reflection(subject: &Subject) -> Result<(), Mismatch> {
+    let text = format!(
+        "{PLATE}
+        background = 1
+        material.glass = {{ k_s = 0.25, k_t = 0.5, refractive_index = 1.5 }}
+        polygon = [
+            {{ vertices = [[-1, 0, 1], [1, 0, 1], [1, 0, -1], [-1, 0, -1]], material = 'glass' }},
+            {{ vertices = [[3, -5, -1], [3, -5, 1], [3, -1, 1], [3, -1, -1]], material = 'plate' }}]"
+    );
+    let words = "glass below y = 0, refractive index 1.5, k_s = 0.25, k_t = 0.5, met from inside at 45 degrees; in \
+                 it a plate around (3, −3, 0), ε = (2, 4, 0.5)";
+    let ray = Ray::new(DVec3::new(-2.0, -2.0, 0.0), DVec3::new(1.0, 1.0, 0.0).normalize());
+    compare(subject, &text, words, ray, 5, 0.75 * GLOW)
+}
+
+const MAX_DEPTH: u32 = 5;
+
+fn title(subject: &Subject) -> Result<(), Mismatch> {
+    let (scene, rays) = title_rays(MAX_DEPTH);
+    for (case, ray) in rays {
+        let stage = || Stage::new(&scene, MAX_DEPTH, reference::SUBJECT);
+        let (got, wanted) = ((subject.lr)(&stage(), &ray, 0), reference::lr(&stage(), &ray, 0));
+        within(1e-10, || case, &got, &wanted)?;
+    }
+    Ok(())
+}
+
+const SIZE: ImageSize = ImageSize::new(320, 240);
+
+/// The chapter's title picture, by all of the subject's functions.
+fn draw(subject: &Subject) -> Image {
+    let scene = scenes::whitted();
+    painted(SIZE, |x, y| {
+        let ray = (subject.primary_ray)(&scene.camera, SIZE, x, y);
+        (subject.lr)(&Stage::new(&scene, MAX_DEPTH, *subject), &ray, 0)
+    })
+}
+
+/// The calls of the right recursion at a pixel, each answered by the subject: the innermost wrong answer is
+/// where to look.
+fn explain(subject: &Subject, [x, y]: [u32; 2]) -> String {
+    let scene = scenes::whitted();
+    let stage = |subject| Stage::new(&scene, MAX_DEPTH, subject);
+    let ray = scene.camera.primary_rays(SIZE).through(f64::from(x) + 0.5, f64::from(y) + 0.5);
+    let tree = reference::recorded(&stage(reference::SUBJECT), &from_eye(ray));
+    let lines = tree.nodes.iter().map(|node| {
+        let got = (subject.lr)(&stage(*subject), &node.call.ray, node.call.depth);
+        let mark = if Shown::distance(&got, &node.radiance) > 1e-9 { "  ← differs" } else { "" };
+        let indent = "  ".repeat(node.call.depth as usize);
+        format!("{indent}{}; returns {}{mark}", described(&scene, node), got.shown())
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+fn described(scene: &Scene, node: &RayNode) -> String {
+    let call = &node.call;
+    let met = match node.end {
+        RayEnd::Background => "meets nothing".to_owned(),
+        RayEnd::Cut => "is beyond Max_Prof".to_owned(),
+        RayEnd::Surface { hit, position, .. } => {
+            let (index, triangles) = (hit.primitive.0 as usize, scene.mesh.triangles.len());
+            let shape = match index.checked_sub(triangles) {
+                None => format!("triangle {index}"),
+                Some(index) => format!("sphere {index}"),
+            };
+            format!("meets {shape} at {}", position.shown())
+        }
+    };
+    format!("{:?}, depth {}: {}, {met}", call.kind, call.depth, call.ray.shown())
+}

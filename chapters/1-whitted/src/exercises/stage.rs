@@ -1,0 +1,149 @@
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use lancer_core::geometry::{Interval, Ray};
+use lancer_core::illumination::Reflectance;
+use lancer_core::intersector::{Hit, Intersector};
+use lancer_core::scene::Scene;
+use lancer_core::world::{PointSource, SurfacePoint};
+use lancer_exercise::Shown;
+use lancer_whitted::{Call, RayKind};
+
+use super::Subject;
+
+/// A scene whose shapes are met by a subject's own functions, set up for one primary ray and all that
+/// follows from it.
+pub struct Stage<'a> {
+    /// What stands on it.
+    pub scene: &'a Scene,
+    /// Its lamps.
+    pub lamps: Vec<PointSource>,
+    /// Max_Prof: the largest number of bounces between the eye and a surface.
+    pub max_depth: u32,
+    subject: Subject,
+    traced: AtomicU64,
+}
+
+impl<'a> Stage<'a> {
+    /// A stage on which `subject` intersects.
+    pub fn new(scene: &'a Scene, max_depth: u32, subject: Subject) -> Self {
+        let lamps = scene.point_sources();
+        Self { scene, lamps, max_depth, subject, traced: AtomicU64::new(0) }
+    }
+
+    /// The surface that a ray meets first.
+    pub fn surface(&self, ray: &Ray) -> Option<SurfacePoint> {
+        let hit = self.closest_hit(ray, Interval::POSITIVE)?;
+        Some(self.scene.surface_at(ray, &hit))
+    }
+
+    /// ρ_d, ρ_s and n at a point of a surface.
+    pub fn reflectance(&self, surface: &SurfacePoint) -> Reflectance {
+        let material = self.scene.material(surface.material);
+        Reflectance {
+            diffuse: material.rho_d.at(surface.position, surface.geometric_normal),
+            specular: material.rho_s,
+            shininess: material.shininess,
+        }
+    }
+
+    /// vis(i): whether a shadow ray reaches its lamp, at t = 1.
+    pub fn is_lit(&self, shadow_ray: &Ray) -> bool {
+        !self.occluded(shadow_ray, Interval::up_to(1.0))
+    }
+
+    /// Ends a recursion that does not end, before it fills the stack.
+    ///
+    /// # Panics
+    /// If there have been far more rays than any tree of depth Max_Prof has, 2^(Max_Prof + 1) − 1.
+    fn count_traced(&self) {
+        let full = (2_u64 << self.max_depth.min(32)) - 1;
+        let traced = self.traced.fetch_add(1, Ordering::Relaxed);
+        assert!(
+            traced < 8 * full,
+            "{traced} rays have been traced where Max_Prof = {} allows {full}: is the depth one more in each call?",
+            self.max_depth
+        );
+    }
+
+    fn hits<'s>(&'s self, ray: &'s Ray, range: Interval) -> impl Iterator<Item = Hit> + 's {
+        let triangles = self.scene.mesh.triangles.len();
+        self.scene.primitives().filter_map(move |primitive| {
+            let index = primitive.0 as usize;
+            let (t, barycentric) = match index.checked_sub(triangles) {
+                None => (self.subject.ray_triangle)(self.scene.mesh.corners(index), ray)?,
+                Some(index) => {
+                    let sphere = &self.scene.spheres[index].shape;
+                    ((self.subject.ray_sphere)(sphere, ray)?, glam::DVec3::ZERO)
+                }
+            };
+            let counts = t > range.min && t < range.max;
+            counts.then_some(Hit { t, primitive, barycentric })
+        })
+    }
+}
+
+impl Intersector for Stage<'_> {
+    fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
+        self.count_traced();
+        self.hits(ray, range).min_by(|a, b| a.t.total_cmp(&b.t))
+    }
+
+    fn occluded(&self, ray: &Ray, range: Interval) -> bool {
+        self.hits(ray, range).next().is_some()
+    }
+}
+
+/// One call of LR in the tree of a pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Node {
+    /// Why the ray is traced.
+    pub kind: RayKind,
+    /// Bounces before it.
+    pub depth: u32,
+    /// The product of the k_s and k_t before it, each of its strongest channel.
+    pub weight: f64,
+    /// Whether it was traced: not beyond Max_Prof.
+    pub traced: bool,
+    /// Shadow rays cast where it met a surface: one to each lamp in front, N·L > 0, with N on the side that
+    /// the ray came from.
+    pub shadows: u32,
+    /// The calls that it made: the refracted ray first, then the mirror ray.
+    pub children: Vec<Node>,
+}
+
+impl Node {
+    /// A call that has made no other and traced nothing.
+    pub fn untraced(call: &Call) -> Self {
+        let Call { kind, depth, weight, .. } = *call;
+        Self { kind, depth, weight, traced: false, shadows: 0, children: Vec::new() }
+    }
+}
+
+/// A line for each call, those that it made below it.
+impl Shown for Node {
+    fn shown(&self) -> String {
+        let Self { kind, depth, weight, traced, shadows, children } = self;
+        let kind = format!("{kind:?}").to_lowercase();
+        let end = if *traced {
+            format!("traced, shadow rays: {shadows}")
+        } else {
+            "cut at Max_Prof".to_owned()
+        };
+        let mut text = format!("{kind}, depth {depth}, weight {}, {end}", weight.shown());
+        for line in children.iter().map(Shown::shown).collect::<Vec<_>>().join("\n").lines() {
+            text += &format!("\n  {line}");
+        }
+        text
+    }
+
+    fn distance(&self, other: &Self) -> f64 {
+        let exact =
+            |node: &Self| (node.kind, node.depth, node.traced, node.shadows, node.children.len());
+        if exact(self) != exact(other) {
+            return f64::INFINITY;
+        }
+        let children = self.children.iter().zip(&other.children);
+        let children = children.map(|(a, b)| a.distance(b));
+        children.fold(self.weight.distance(&other.weight), f64::max)
+    }
+}

@@ -1,0 +1,17 @@
+//! E1.3 Where a ray meets a sphere. Slide « Algorithme : calcul des intersections ».
+
+use chapter_1::exercises::prelude::*;
+
+/// A difference F·F − r² below this share of the sum F·F + r² is rounding noise: count it as 0.
+const NOISE: f64 = 1e-15;
+
+/// The smallest t > 0 at which a ray meets a sphere, from outside or from inside.
+///
+/// - `sphere.center`, `sphere.radius` (greater than 0).
+/// - `ray`: its direction has any length; t is in units of it.
+///
+/// A ray that just touches the sphere meets it. A ray that starts on the sphere, up to [`NOISE`], does not
+/// meet it there. The answer has all its digits also when the sphere is a million radii away.
+pub fn ray_sphere(sphere: &Sphere, ray: &Ray) -> Option<f64> {
+    todo!("E1.3: the roots of the quadratic, without cancellation")
+}

@@ -1,0 +1,13 @@
+//! E1.6 The mirror ray. Slide « Reflets spéculaires : calcul du rayon réfléchi ».
+
+use chapter_1::exercises::prelude::*;
+
+/// The direction in which a mirror sends on what arrives along `incident`.
+///
+/// - `incident`: unit, towards the surface (the V of the slide's formula).
+/// - `n`: the unit normal; it may stand on either side.
+///
+/// The answer is unit and leads away from the surface.
+pub fn reflected_ray(incident: DVec3, n: DVec3) -> DVec3 {
+    todo!("E1.6: mirror the incident direction")
+}

@@ -1,0 +1,89 @@
+//! The exercises of the chapter prove themselves: the right answer passes every check, an untouched stub
+//! passes none, every known slip is caught by the check that names it and looks like no other.
+
+use chapter_1::exercises::{COURSE, Subject};
+use lancer_exercise::{Solution, Verified, passed_by_stub};
+
+/// What the later stubs call: in a student's workspace, their own functions.
+mod yours {
+    pub use chapter_1::exercises::reference::*;
+}
+
+#[allow(dead_code, unused_imports, unused_variables)]
+#[path = "../stubs"]
+mod stubs {
+    pub mod e01_primary_ray;
+    pub mod e02_ray_triangle;
+    pub mod e03_ray_sphere;
+    pub mod e04_shadow_ray;
+    pub mod e05_local_light;
+    pub mod e06_reflected_ray;
+    pub mod e07_refracted_ray;
+    pub mod e08_lr;
+    pub mod e09_ray_tree;
+    pub mod e10_samples;
+}
+
+/// The stubs as they are handed out: their functions have the types that the course asks for.
+const STUB: Subject = Subject {
+    primary_ray: stubs::e01_primary_ray::primary_ray,
+    ray_triangle: stubs::e02_ray_triangle::ray_triangle,
+    ray_sphere: stubs::e03_ray_sphere::ray_sphere,
+    shadow_ray: stubs::e04_shadow_ray::shadow_ray,
+    local_light: stubs::e05_local_light::local_light,
+    reflected_ray: stubs::e06_reflected_ray::reflected_ray,
+    refracted_ray: stubs::e07_refracted_ray::refracted_ray,
+    lr: stubs::e08_lr::lr,
+    ray_tree: stubs::e09_ray_tree::ray_tree,
+    count_rays: stubs::e09_ray_tree::count_rays,
+    pixel_mean: stubs::e10_samples::pixel_mean,
+    rms_error: stubs::e10_samples::rms_error,
+};
+
+#[test]
+fn the_reference_passes_and_every_slip_is_caught() {
+    for exercise in COURSE.exercises {
+        let verified = Verified::of(exercise, COURSE.reference);
+        assert_eq!(verified.reference_fails, [""; 0], "{}", verified.name);
+        assert!(verified.proofs.len() >= 3, "{}: three slips", verified.name);
+        for proof in &verified.proofs {
+            assert_eq!(proof.twin, None, "{}: {}", verified.name, proof.says);
+            assert!(
+                proof.holds(&verified.checks),
+                "{}: {}: {:?}",
+                verified.name,
+                proof.says,
+                proof.caught
+            );
+        }
+    }
+}
+
+#[test]
+fn an_untouched_stub_passes_no_check() {
+    for exercise in COURSE.exercises {
+        assert_eq!(passed_by_stub(exercise, STUB), [""; 0], "{}", exercise.card.name);
+    }
+}
+
+#[test]
+fn every_solution_stands_where_its_card_says() {
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+    for exercise in COURSE.exercises {
+        let Solution { file, item, .. } = exercise.card.solution;
+        let text = std::fs::read_to_string(format!("{root}/{file}")).unwrap();
+        let is_there = text.lines().any(|line| line.trim_start().starts_with(item));
+        assert!(is_there, "{}: no `{item}` in {file}", exercise.card.name);
+    }
+}
+
+#[test]
+fn the_lesson_has_them_in_order() {
+    let lesson = include_str!("../README.md");
+    let places = COURSE.exercises.iter().map(|exercise| {
+        let card = exercise.card;
+        let entry = format!("**Exercise {}**, `cargo xtask exercise start {}`", card.id, card.name);
+        lesson.find(&entry).unwrap_or_else(|| panic!("the lesson has no {entry}"))
+    });
+    assert!(places.collect::<Vec<_>>().is_sorted());
+}
