@@ -5,7 +5,12 @@
 //! bit and the same primitive. To that end boxes are culled conservatively and primitives are decided
 //! by one shared `f64` test, [`lancer_core::intersector::Probe`].
 
+mod binary_tree;
+mod bvh;
 mod four_boxes;
+mod four_wide;
 mod obvhs_bvh2;
 
+pub use binary_tree::{BinaryTree, TreeStatistics};
+pub use bvh::{Bvh, Split};
 pub use obvhs_bvh2::ObvhsBvh2;
