@@ -210,13 +210,15 @@ mod tests {
             harm(&mut tree);
             [tree.validate().unwrap_err(), FourWide::of(tree).validate().unwrap_err()]
         };
-        let small = broken(&|tree| {
-            for child in tree.nodes[0].children() {
-                tree.nodes[child].bounds = FrameBox::EMPTY;
-            }
-        });
-        assert!(small.iter().all(|problem| problem.contains("sticks out")), "{small:?}");
         let pair = |tree: &BinaryTree| tree.nodes.iter().position(|node| node.count > 1).unwrap();
+        let small = broken(&|tree| {
+            let pair = pair(tree);
+            tree.nodes[pair].bounds = FrameBox::EMPTY;
+        });
+        assert!(
+            small.iter().all(|problem| problem.contains("sticks out of its leaf")),
+            "{small:?}"
+        );
         let missing = broken(&|tree| {
             let pair = pair(tree);
             tree.nodes[pair].count -= 1;
