@@ -9,7 +9,7 @@ use std::path::Path;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec3;
-use lancer_accel::{Bvh, ObvhsBvh2, Split};
+use lancer_accel::{Bvh, ObvhsBvh2, ObvhsCwbvh, Split};
 use lancer_core::Rgb;
 use lancer_core::generate::icosphere;
 use lancer_core::geometry::{Interval, Ray, leave_surface};
@@ -22,10 +22,11 @@ use lancer_core::scene::{Camera, Material, MaterialId, Mesh, PointLight, Scene, 
 pub type Build = for<'s> fn(&'s Scene) -> Box<dyn Intersector + 's>;
 
 /// What is compared; the first one says how many rays hit.
-pub const INDEXES: [(&str, Build); 3] = [
+pub const INDEXES: [(&str, Build); 4] = [
     ("obvhs-bvh2", |scene| Box::new(ObvhsBvh2::build(scene))),
     ("bvh", |scene| Box::new(Bvh::build(scene))),
     ("bvh, median", |scene| Box::new(Bvh::with_split(scene, Split::Median))),
+    ("obvhs-cwbvh", |scene| Box::new(ObvhsCwbvh::build(scene))),
 ];
 
 /// The picture whose rays are traced.

@@ -20,6 +20,12 @@ impl FourBoxes {
         }
     }
 
+    /// The boxes between four smallest and four largest coordinates on each axis.
+    #[inline(always)]
+    pub(crate) fn between(planes: [[Vec4; 2]; 3]) -> Self {
+        Self { planes }
+    }
+
     /// The box in a lane.
     pub(crate) fn get(&self, lane: usize) -> FrameBox {
         let [x, y, z] = self.planes;
@@ -41,10 +47,23 @@ impl FrameBox {
     /// The box that contains nothing.
     pub(crate) const EMPTY: Self = Self { min: Vec3A::INFINITY, max: Vec3A::NEG_INFINITY };
 
+    /// The box that contains everything.
+    pub(crate) const EVERYTHING: Self = Self { min: Vec3A::NEG_INFINITY, max: Vec3A::INFINITY };
+
     /// The smallest box around both.
     #[inline(always)]
     pub(crate) fn union(self, other: Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// What is in both.
+    pub(crate) fn intersection(self, other: Self) -> Self {
+        Self { min: self.min.max(other.min), max: self.max.min(other.max) }
+    }
+
+    /// The box with all faces moved outwards.
+    pub(crate) fn grown(self, by: f32) -> Self {
+        Self { min: self.min - by, max: self.max + by }
     }
 
     /// Half the area of its faces. A random line that meets a convex body meets a convex body inside

@@ -7,6 +7,7 @@ use smallvec::SmallVec;
 
 use crate::binary_tree::{BinaryTree, Seen, TreeNode, TreeStatistics};
 use crate::four_boxes::{FourBoxes, FourSlabs, Frame};
+use crate::pending::{Entered, Lanes, Pending};
 
 /// A binary tree walked two levels at a time: a node here has up to four children, since four boxes
 /// are tested at the price of one.
@@ -50,13 +51,6 @@ impl Node {
     }
 }
 
-/// A node still to be visited: the parameter at which the ray enters it, at least 0, in the upper half
-/// and its index in the lower one. Such numbers are ordered near to far.
-type Pending = u64;
-
-/// What is still to be visited. A tree that needs more than 64 is rare and pays for an allocation.
-type Stack = SmallVec<[Pending; 64]>;
-
 impl<'s> FourWide<'s> {
     /// Takes over a tree whose leaves have at most 255 primitives.
     pub(crate) fn of(tree: BinaryTree<'s>) -> Self {
@@ -88,13 +82,13 @@ impl<'s> FourWide<'s> {
         let mut probe = Probe::new(self.scene, ray, range);
         let slabs = FourSlabs::new(ray, &self.frame);
         let mut max = slabs.parameter(range.max);
-        let mut stack = Stack::new();
+        let mut pending = Pending::default();
         let mut next = self.nodes.first();
         while let Some(node) = next {
             (0..4).for_each(|_| observer.box_test());
             let (near, met) = slabs.enter(&node.boxes, max);
             let near = near.to_array();
-            for lane in Lanes(met & node.leaves) {
+            for lane in Lanes::<4>(met & node.leaves) {
                 if near[lane] > max {
                     continue;
                 }
@@ -106,18 +100,9 @@ impl<'s> FourWide<'s> {
                 }
                 max = slabs.parameter(probe.range().max);
             }
-            let mut inner =
-                Lanes(met & !node.leaves).map(|lane| pending(near[lane], node.first[lane]));
-            next = if let Some(mut nearest) = inner.next() {
-                for other in inner {
-                    stack.push(nearest.max(other));
-                    nearest = nearest.min(other);
-                }
-                Some(nearest as u32)
-            } else {
-                pop(&mut stack, max)
-            }
-            .map(|index| &self.nodes[index as usize]);
+            let inner = Lanes::<4>(met & !node.leaves)
+                .map(|lane| Entered::new(near[lane], node.first[lane]));
+            next = pending.next(inner, max).map(|index| &self.nodes[index]);
         }
         probe.best()
     }
@@ -152,39 +137,6 @@ impl<'s> FourWide<'s> {
             return Err(format!("{reached} of {} nodes are reached", self.nodes.len()));
         }
         seen.all()
-    }
-}
-
-/// The set bits of a mask of four lanes.
-struct Lanes(u32);
-
-impl Iterator for Lanes {
-    type Item = usize;
-
-    #[inline(always)]
-    fn next(&mut self) -> Option<usize> {
-        if self.0 == 0 {
-            return None;
-        }
-        let lane = self.0.trailing_zeros() as usize % 4;
-        self.0 &= self.0 - 1;
-        Some(lane)
-    }
-}
-
-#[inline(always)]
-fn pending(near: f32, node: u32) -> Pending {
-    u64::from(near.to_bits()) << 32 | u64::from(node)
-}
-
-/// The next node that is not entirely behind the closest hit.
-#[inline(always)]
-fn pop(stack: &mut Stack, max: f32) -> Option<u32> {
-    loop {
-        let pending = stack.pop()?;
-        if f32::from_bits((pending >> 32) as u32) <= max {
-            return Some(pending as u32);
-        }
     }
 }
 

@@ -31,7 +31,7 @@ impl<'s> ObvhsBvh2<'s> {
     /// Builds the tree over all primitives of the scene.
     pub fn build(scene: &'s Scene) -> Self {
         let frame = Frame::of(scene.bounds());
-        let boxes = library_boxes(scene, &frame);
+        let boxes = library_boxes(scene, &frame, 0.0);
         let tree = if boxes.is_empty() {
             Bvh2::default()
         } else {
@@ -75,10 +75,10 @@ impl<'s> ObvhsBvh2<'s> {
     }
 }
 
-/// The primitives' boxes as the library wants them.
-fn library_boxes(scene: &Scene, frame: &Frame) -> Vec<Aabb> {
+/// The primitives' boxes as the library wants them, grown by a margin.
+pub(crate) fn library_boxes(scene: &Scene, frame: &Frame, margin: f32) -> Vec<Aabb> {
     let library_box = |primitive| {
-        let bounds = frame.outwards(scene.primitive_bounds(primitive));
+        let bounds = frame.outwards(scene.primitive_bounds(primitive)).grown(margin);
         Aabb::new(bounds.min, bounds.max)
     };
     scene.primitives().map(library_box).collect()

@@ -128,72 +128,17 @@ impl Item {
 #[cfg(test)]
 mod tests {
     use glam::{DAffine3, DVec3};
-    use lancer_core::Rgb;
     use lancer_core::generate::icosphere;
     use lancer_core::intersector::TestCounts;
-    use lancer_core::scene::{Camera, Material, MaterialId, Mesh};
 
     use super::*;
+    use crate::hard_sets::{hard_sets, scene_of, triangles};
 
     const SPLITS: [Split; 2] = [Split::Median, Split::Sah];
 
-    fn scene_of(mesh: Mesh) -> Scene {
-        Scene {
-            camera: Camera { eye: DVec3::Z, look_at: DVec3::ZERO, up: DVec3::Y, fov: 40.0 },
-            mesh,
-            spheres: Vec::new(),
-            materials: vec![Material::matte(Rgb::ONE)],
-            lights: Vec::new(),
-            ambient: Rgb::ZERO,
-            background: Rgb::ZERO,
-        }
-    }
-
-    fn triangles(corners: impl IntoIterator<Item = [DVec3; 3]>) -> Scene {
-        let mut mesh = Mesh::default();
-        for (k, corners) in (0..).step_by(3).zip(corners) {
-            mesh.positions.extend(corners);
-            mesh.push_face(MaterialId(0), &[[k, k + 1, k + 2]]);
-        }
-        scene_of(mesh)
-    }
-
-    /// Sets on which builders recurse for ever, divide by zero or take quadratic time.
     #[test]
     fn hard_sets_are_built() {
-        const MANY: usize = 100_000;
-        let unit = [DVec3::X, DVec3::Y, DVec3::Z];
-        let tiny = |k: usize| {
-            let corner = DVec3::new((k % 317) as f64, (k / 317) as f64, 0.0);
-            [corner, corner + 1e-3 * DVec3::X, corner + 1e-3 * DVec3::Y]
-        };
-        let scaled = |scale: f64| (0..1000).map(move |k| tiny(k).map(|corner| scale * corner));
-        let huge = [-1e9, 1e9].map(|x| DVec3::new(x, 1e9, x));
-        let sets = [
-            ("none", triangles([])),
-            ("one", triangles([unit])),
-            ("points", triangles((0..MANY).map(|_| [DVec3::ONE; 3]))),
-            ("identical", triangles((0..MANY).map(|_| unit))),
-            ("coplanar", triangles((0..MANY).map(tiny))),
-            ("extents of 1e-30", triangles(scaled(1e-30))),
-            ("extents of 1e30", triangles(scaled(1e30))),
-            ("one huge", triangles((0..MANY).map(tiny).chain([[huge[0], huge[1], DVec3::X]]))),
-            // All boxes contain the origin: wherever they are divided, both parts overlap.
-            (
-                "overlapping",
-                triangles((0..MANY).map(|k| {
-                    let turn = k as f64 * 2.4;
-                    let out = DVec3::new(turn.cos(), turn.sin(), k as f64 / MANY as f64);
-                    [out, -out, DVec3::Z * out.z]
-                })),
-            ),
-            // Each box is a little smaller than the one around it, and shares a corner with it.
-            (
-                "nested",
-                triangles((0..MANY).map(|k| unit.map(|corner| 0.999_f64.powi(k as i32) * corner))),
-            ),
-        ];
-        for (name, scene) in &sets {
+        for (name, scene) in &hard_sets(100_000) {
             for split in SPLITS {
                 let valid = BinaryTree::build(scene, split).validate();
                 assert_eq!(valid, Ok(()), "{name}, {split:?}");
