@@ -88,7 +88,7 @@ fn taken_over(node: &Bvh2Node) -> TreeNode {
     TreeNode {
         bounds: FrameBox { min: Vec3A::from(node.min), max: Vec3A::from(node.max) },
         first: node.first_index,
-        count: node.prim_count as u32,
+        count: node.prim_count,
     }
 }
 
