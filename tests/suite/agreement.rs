@@ -2,7 +2,7 @@
 //! aimed where indexes go wrong.
 
 use glam::DVec3;
-use lancer_accel::ObvhsBvh2;
+use lancer_accel::{BinaryTree, Bvh, ObvhsBvh2, ObvhsCwbvh, Split};
 use lancer_core::generate::icosphere;
 use lancer_core::geometry::{Interval, Ray, Sphere};
 use lancer_core::intersector::{Intersector, LinearScan, TestCounts};
@@ -67,7 +67,13 @@ fn aimed(class: &str, mesh: &Mesh, offset: DVec3, random: &mut Random) -> Ray {
 type Build = for<'s> fn(&'s Scene) -> Box<dyn Intersector + 's>;
 
 /// Every index of chapter 4 but the oracle.
-const INDEXES: [(&str, Build); 1] = [("obvhs-bvh2", |scene| Box::new(ObvhsBvh2::build(scene)))];
+const INDEXES: [(&str, Build); 5] = [
+    ("obvhs-bvh2", |scene| Box::new(ObvhsBvh2::build(scene))),
+    ("obvhs-cwbvh", |scene| Box::new(ObvhsCwbvh::build(scene))),
+    ("bvh", |scene| Box::new(Bvh::build(scene))),
+    ("bvh, median", |scene| Box::new(Bvh::with_split(scene, Split::Median))),
+    ("bvh, recursive", |scene| Box::new(BinaryTree::build(scene, Split::Sah))),
+];
 
 fn assert_agreement(scene: &Scene, offset: DVec3, rays: usize) {
     for (name, build) in INDEXES {

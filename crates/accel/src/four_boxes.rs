@@ -12,12 +12,71 @@ impl FourBoxes {
     /// Four boxes that no ray meets.
     pub(crate) const EMPTY: Self = Self { planes: [[Vec4::INFINITY, Vec4::NEG_INFINITY]; 3] };
 
-    /// Puts a box, given by its smallest and largest coordinates, into a lane.
-    pub(crate) fn set(&mut self, lane: usize, [min, max]: [Vec3A; 2]) {
+    /// Puts a box into a lane.
+    pub(crate) fn set(&mut self, lane: usize, bounds: FrameBox) {
         for (axis, planes) in self.planes.iter_mut().enumerate() {
-            planes[0][lane] = min[axis];
-            planes[1][lane] = max[axis];
+            planes[0][lane] = bounds.min[axis];
+            planes[1][lane] = bounds.max[axis];
         }
+    }
+
+    /// The boxes between four smallest and four largest coordinates on each axis.
+    #[inline(always)]
+    pub(crate) fn between(planes: [[Vec4; 2]; 3]) -> Self {
+        Self { planes }
+    }
+
+    /// The box in a lane.
+    pub(crate) fn get(&self, lane: usize) -> FrameBox {
+        let [x, y, z] = self.planes;
+        FrameBox {
+            min: Vec3A::new(x[0][lane], y[0][lane], z[0][lane]),
+            max: Vec3A::new(x[1][lane], y[1][lane], z[1][lane]),
+        }
+    }
+}
+
+/// A box in the coordinates of a [`Frame`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct FrameBox {
+    pub(crate) min: Vec3A,
+    pub(crate) max: Vec3A,
+}
+
+impl FrameBox {
+    /// The box that contains nothing.
+    pub(crate) const EMPTY: Self = Self { min: Vec3A::INFINITY, max: Vec3A::NEG_INFINITY };
+
+    /// The box that contains everything.
+    pub(crate) const EVERYTHING: Self = Self { min: Vec3A::NEG_INFINITY, max: Vec3A::INFINITY };
+
+    /// The smallest box around both.
+    #[inline(always)]
+    pub(crate) fn union(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// What is in both.
+    pub(crate) fn intersection(self, other: Self) -> Self {
+        Self { min: self.min.max(other.min), max: self.max.min(other.max) }
+    }
+
+    /// The box with all faces moved outwards.
+    pub(crate) fn grown(self, by: f32) -> Self {
+        Self { min: self.min - by, max: self.max + by }
+    }
+
+    /// Half the area of its faces. A random line that meets a convex body meets a convex body inside
+    /// it with the probability of the ratio of their areas: the reason of the surface area heuristic.
+    #[inline(always)]
+    pub(crate) fn half_area(self) -> f32 {
+        let side = self.max - self.min;
+        side.x * (side.y + side.z) + side.y * side.z
+    }
+
+    /// Whether the other box lies in it.
+    pub(crate) fn contains(self, other: Self) -> bool {
+        self.min.cmple(other.min).all() && other.max.cmple(self.max).all()
     }
 }
 
@@ -41,12 +100,12 @@ impl Frame {
     }
 
     /// A box in this frame, rounded outwards by more than the primitive test can err.
-    pub(crate) fn outwards(&self, bounds: Bounds3) -> [Vec3A; 2] {
+    pub(crate) fn outwards(&self, bounds: Bounds3) -> FrameBox {
         let margin = f64::from(f32::EPSILON);
         let unit = |p: DVec3| (p - self.center) * self.to_unit;
         let min = (unit(bounds.min) - margin).as_vec3a().to_array().map(f32::next_down);
         let max = (unit(bounds.max) + margin).as_vec3a().to_array().map(f32::next_up);
-        [min.into(), max.into()]
+        FrameBox { min: min.into(), max: max.into() }
     }
 }
 
@@ -138,6 +197,20 @@ impl FourSlabs {
             far = far.min(last * self.inverse[axis] + self.far_offset[axis]);
         }
         (near, near.cmple(far).bitmask())
+    }
+
+    /// The same for a single box.
+    #[inline]
+    pub(crate) fn enter_one(&self, bounds: FrameBox, max: f32) -> Option<f32> {
+        let [mut first, mut last] = [bounds.min, bounds.max];
+        for axis in 0..3 {
+            if self.negative[axis] {
+                (first[axis], last[axis]) = (last[axis], first[axis]);
+            }
+        }
+        let near = (first * self.inverse + self.near_offset).max_element().max(0.0);
+        let far = (last * self.inverse + self.far_offset).min_element().min(max);
+        (near <= far).then_some(near)
     }
 }
 

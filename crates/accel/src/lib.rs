@@ -5,7 +5,17 @@
 //! bit and the same primitive. To that end boxes are culled conservatively and primitives are decided
 //! by one shared `f64` test, [`lancer_core::intersector::Probe`].
 
+mod binary_tree;
+mod bvh;
 mod four_boxes;
+mod four_wide;
+#[cfg(test)]
+mod hard_sets;
 mod obvhs_bvh2;
+mod obvhs_cwbvh;
+mod pending;
 
+pub use binary_tree::{BinaryTree, TreeStatistics};
+pub use bvh::{Bvh, Split};
 pub use obvhs_bvh2::ObvhsBvh2;
+pub use obvhs_cwbvh::ObvhsCwbvh;

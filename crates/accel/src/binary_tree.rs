@@ -1,0 +1,248 @@
+use std::ops::Range;
+
+use lancer_core::geometry::{Interval, Ray};
+use lancer_core::intersector::{Hit, Intersector, Observer, Probe};
+use lancer_core::scene::{PrimitiveId, Scene};
+
+use crate::four_boxes::{FourSlabs, Frame, FrameBox};
+
+/// A binary hierarchy of bounding volumes, walked by recursion: the algorithm as it is taught.
+///
+/// [`crate::Bvh`] walks the same tree without recursion and two levels at a time. This one is for
+/// reading, for looking at trees, and for checking the faster walk.
+///
+/// *Walk:* a ray that misses a node's box misses everything below. Of two children that it meets it
+/// takes the nearer one first, since a hit there often ends before the other begins. Source: Kay and
+/// Kajiya, *Ray Tracing Complex Scenes*, SIGGRAPH 1986.
+#[doc(alias = "hiérarchie de volumes englobants")]
+pub struct BinaryTree<'s> {
+    pub(crate) scene: &'s Scene,
+    pub(crate) frame: Frame,
+    /// The first is the root; there is none in an empty scene.
+    pub(crate) nodes: Vec<TreeNode>,
+    /// The primitives of the leaves, leaf by leaf.
+    pub(crate) primitives: Vec<PrimitiveId>,
+}
+
+/// A node with a box around everything below it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TreeNode {
+    pub(crate) bounds: FrameBox,
+    /// The first primitive of a leaf, or the first child; the second child follows it.
+    pub(crate) first: u32,
+    /// The number of a leaf's primitives; 0 in an inner node.
+    pub(crate) count: u32,
+}
+
+impl TreeNode {
+    pub(crate) fn is_leaf(&self) -> bool {
+        self.count > 0
+    }
+
+    /// A leaf's primitives.
+    pub(crate) fn leaf(&self) -> Range<usize> {
+        self.first as usize..(self.first + self.count) as usize
+    }
+
+    /// An inner node's children.
+    pub(crate) fn children(&self) -> [usize; 2] {
+        [self.first as usize, self.first as usize + 1]
+    }
+}
+
+/// The shape of a tree.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TreeStatistics {
+    /// The surface area heuristic: how many node visits and primitive tests, counted alike, a random
+    /// line costs that meets the scene's box, if nothing stops it.
+    /// C = Σ_inner A(n)/A(root) + Σ_leaves A(n)/A(root) · primitives(n)
+    ///
+    /// Source: Goldsmith and Salmon, *Automatic Creation of Object Hierarchies for Ray Tracing*, IEEE
+    /// CG&A 7(5), 1987; MacDonald and Booth, *Heuristics for Ray Tracing Using Space Subdivision*, 1990.
+    #[doc(alias = "SAH")]
+    pub sah_cost: f64,
+    /// Nodes, inner ones and leaves.
+    pub nodes: usize,
+    /// Steps from the root to the deepest leaf.
+    pub depth: usize,
+    /// How many leaves have 0, 1, 2, … primitives.
+    pub leaves: Vec<usize>,
+}
+
+impl BinaryTree<'_> {
+    /// Its cost, depth and leaves.
+    pub fn statistics(&self) -> TreeStatistics {
+        let mut statistics = TreeStatistics { nodes: self.nodes.len(), ..Default::default() };
+        let Some(root) = self.nodes.first() else { return statistics };
+        let mut area = 0.0;
+        let mut pending = vec![(root, 0)];
+        while let Some((node, depth)) = pending.pop() {
+            let half_area = f64::from(node.bounds.half_area());
+            if node.is_leaf() {
+                let count = node.count as usize;
+                if statistics.leaves.len() <= count {
+                    statistics.leaves.resize(count + 1, 0);
+                }
+                statistics.leaves[count] += 1;
+                statistics.depth = statistics.depth.max(depth);
+                area += half_area * count as f64;
+            } else {
+                area += half_area;
+                pending.extend(node.children().map(|child| (&self.nodes[child], depth + 1)));
+            }
+        }
+        statistics.sah_cost = area / f64::from(root.bounds.half_area());
+        statistics
+    }
+
+    /// Bytes held by the tree, without the scene it borrows.
+    pub fn memory(&self) -> usize {
+        size_of_val(self.nodes.as_slice()) + size_of_val(self.primitives.as_slice())
+    }
+
+    /// Checks that every box contains what is below it, and that every node and every primitive is
+    /// below the root once.
+    pub fn validate(&self) -> Result<(), String> {
+        let mut seen = Seen::new(self.scene);
+        let mut reached = 0;
+        let mut pending: Vec<usize> = if self.nodes.is_empty() { Vec::new() } else { vec![0] };
+        while let Some(index) = pending.pop() {
+            reached += 1;
+            if reached > self.nodes.len() {
+                return Err("a node is below itself".into());
+            }
+            let node = &self.nodes[index];
+            if node.is_leaf() {
+                seen.leaf(&self.frame, node.bounds, &self.primitives[node.leaf()])?;
+                continue;
+            }
+            for child in node.children() {
+                if !node.bounds.contains(self.nodes[child].bounds) {
+                    return Err(format!("node {child} sticks out of node {index}"));
+                }
+                pending.push(child);
+            }
+        }
+        if reached < self.nodes.len() {
+            return Err(format!("{reached} of {} nodes are reached", self.nodes.len()));
+        }
+        seen.all()
+    }
+
+    /// Visits the primitives whose boxes the ray meets, the nearer child first, until `done` says so.
+    pub fn walk<O: Observer>(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        observer: &mut O,
+        done: impl Fn(&Probe) -> bool,
+    ) -> Option<Hit> {
+        let root = self.nodes.first()?;
+        let slabs = FourSlabs::new(ray, &self.frame);
+        let mut descent = Descent {
+            tree: self,
+            slabs,
+            max: slabs.parameter(range.max),
+            probe: Probe::new(self.scene, ray, range),
+            observer,
+            done,
+        };
+        if descent.enter(root).is_some() {
+            descent.visit(root);
+        }
+        descent.probe.best()
+    }
+}
+
+/// A ray on its way down the tree.
+struct Descent<'a, O, D> {
+    tree: &'a BinaryTree<'a>,
+    slabs: FourSlabs,
+    /// Where the closest hit so far is, in the units of the boxes.
+    max: f32,
+    probe: Probe<'a>,
+    observer: &'a mut O,
+    done: D,
+}
+
+impl<O: Observer, D: Fn(&Probe) -> bool> Descent<'_, O, D> {
+    /// Where the ray enters the node's box, if it does so before the closest hit.
+    fn enter(&mut self, node: &TreeNode) -> Option<f32> {
+        self.observer.box_test();
+        self.slabs.enter_one(node.bounds, self.max)
+    }
+
+    /// Visits a node whose box the ray meets. Returns whether the walk is over.
+    fn visit(&mut self, node: &TreeNode) -> bool {
+        let tree = self.tree;
+        if node.is_leaf() {
+            for &primitive in &tree.primitives[node.leaf()] {
+                self.observer.primitive_test(primitive);
+                if self.probe.test(primitive) && (self.done)(&self.probe) {
+                    return true;
+                }
+            }
+            self.max = self.slabs.parameter(self.probe.range().max);
+            return false;
+        }
+        let children = node.children().map(|child| &tree.nodes[child]);
+        let mut order = children.map(|child| (self.enter(child), child));
+        if order[1].0 < order[0].0 {
+            order.reverse();
+        }
+        // The second box is met no more if a hit in the first one lies before it.
+        order
+            .into_iter()
+            .any(|(near, child)| near.is_some_and(|near| near <= self.max) && self.visit(child))
+    }
+}
+
+impl Intersector for BinaryTree<'_> {
+    fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
+        self.walk(ray, range, &mut (), |_| false)
+    }
+
+    fn occluded(&self, ray: &Ray, range: Interval) -> bool {
+        self.walk(ray, range, &mut (), |_| true).is_some()
+    }
+}
+
+/// Which primitives a validation has found in the leaves.
+pub(crate) struct Seen<'s> {
+    scene: &'s Scene,
+    seen: Vec<bool>,
+}
+
+impl<'s> Seen<'s> {
+    pub(crate) fn new(scene: &'s Scene) -> Self {
+        Self { scene, seen: vec![false; scene.primitives().len()] }
+    }
+
+    /// A leaf must contain its primitives, and no other leaf may have them.
+    pub(crate) fn leaf(
+        &mut self,
+        frame: &Frame,
+        bounds: FrameBox,
+        primitives: &[PrimitiveId],
+    ) -> Result<(), String> {
+        for &primitive in primitives {
+            let seen = self.seen.get_mut(primitive.0 as usize);
+            let seen = seen.ok_or_else(|| format!("there is no {primitive:?}"))?;
+            if std::mem::replace(seen, true) {
+                return Err(format!("{primitive:?} is in two leaves"));
+            }
+            if !bounds.contains(frame.outwards(self.scene.primitive_bounds(primitive))) {
+                return Err(format!("{primitive:?} sticks out of its leaf"));
+            }
+        }
+        Ok(())
+    }
+
+    /// No primitive may be missing.
+    pub(crate) fn all(self) -> Result<(), String> {
+        match self.seen.iter().position(|seen| !seen) {
+            Some(missing) => Err(format!("{:?} is in no leaf", PrimitiveId(missing as u32))),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,285 @@
+use glam::Vec3A;
+
+use super::{Item, Split};
+use crate::binary_tree::{TreeNode, TreeStatistics};
+use crate::four_boxes::FrameBox;
+
+/// What a node's two box tests cost, in primitive tests.
+const NODE_COST: f32 = 1.0;
+/// Nodes with more primitives are always divided: so a leaf of boxes that overlap all the same does
+/// not have all of them.
+const MAX_LEAF: usize = 4;
+/// Bins along an axis. Twice as many lower the cost of a tree by less than 1 %.
+const BINS: usize = 16;
+/// At this depth the heuristic is given up and nodes are halved, which ends within log2 of 2³²
+/// further levels: no arrangement of primitives makes the recursion deeper than [`MAX_DEPTH`].
+const SAH_DEPTH: usize = 64;
+const MAX_DEPTH: usize = SAH_DEPTH + 32;
+/// Subtrees of fewer primitives are not worth a task of their own.
+const TASK: usize = 4096;
+
+/// Sorts the items into leaves and returns the nodes above them.
+pub(super) fn tree(items: &mut [Item], split: Split) -> Vec<TreeNode> {
+    if items.is_empty() { Vec::new() } else { subtree(items, 0, 0, split) }
+}
+
+pub(super) fn check_depth(statistics: &TreeStatistics) -> Result<(), String> {
+    let depth = statistics.depth;
+    if depth > MAX_DEPTH { Err(format!("{depth} levels")) } else { Ok(()) }
+}
+
+const UNKNOWN: TreeNode = TreeNode { bounds: FrameBox::EMPTY, first: 0, count: 0 };
+
+/// The nodes of a subtree, its root first. `first` is where its items stand among all.
+fn subtree(items: &mut [Item], first: u32, depth: usize, split: Split) -> Vec<TreeNode> {
+    let mut nodes = vec![UNKNOWN];
+    grow(&mut nodes, 0, items, first, depth, split);
+    nodes
+}
+
+/// Makes a node of some items, and what is below it.
+fn grow(
+    nodes: &mut Vec<TreeNode>,
+    node: usize,
+    items: &mut [Item],
+    first: u32,
+    depth: usize,
+    split: Split,
+) {
+    let bounds = items.iter().fold(FrameBox::EMPTY, |bounds, item| bounds.union(item.bounds));
+    let Some(middle) = divide(items, bounds, depth, split) else {
+        nodes[node] = TreeNode { bounds, first, count: items.len() as u32 };
+        return;
+    };
+    let left = nodes.len();
+    let right = left + 1;
+    nodes[node] = TreeNode { bounds, first: left as u32, count: 0 };
+    nodes.extend([UNKNOWN; 2]);
+    let parallel = items.len() >= TASK;
+    let (lefts, rights) = items.split_at_mut(middle);
+    let (first, second, depth) = (first, first + middle as u32, depth + 1);
+    if parallel {
+        let (below_left, below_right) = rayon::join(
+            || subtree(lefts, first, depth, split),
+            || subtree(rights, second, depth, split),
+        );
+        graft(nodes, left, below_left);
+        graft(nodes, right, below_right);
+    } else {
+        grow(nodes, left, lefts, first, depth, split);
+        grow(nodes, right, rights, second, depth, split);
+    }
+}
+
+/// Puts a subtree's root in its place and the rest at the end.
+fn graft(nodes: &mut Vec<TreeNode>, place: usize, subtree: Vec<TreeNode>) {
+    let shift = nodes.len() as u32 - 1;
+    let mut moved = subtree.into_iter().map(|node| TreeNode {
+        first: if node.is_leaf() { node.first } else { node.first + shift },
+        ..node
+    });
+    nodes[place] = moved.next().expect("a subtree has a root");
+    nodes.extend(moved);
+}
+
+/// Sorts a node's items into those of its left child and those of its right one, and returns how many
+/// are left, if it is to have children.
+fn divide(items: &mut [Item], bounds: FrameBox, depth: usize, split: Split) -> Option<usize> {
+    let too_many = items.len() > MAX_LEAF;
+    if items.len() == 1 || (split == Split::Median && !too_many) {
+        return None;
+    }
+    if split == Split::Median || depth >= SAH_DEPTH {
+        return too_many.then(|| halve(items));
+    }
+    let Some(plane) = best_plane(items) else { return too_many.then(|| halve(items)) };
+    let area = bounds.half_area();
+    let pays = NODE_COST * area + plane.cost < area * items.len() as f32;
+    (too_many || pays).then(|| plane.partition(items))
+}
+
+/// The object median along the longest axis of the centres. Where they coincide the smaller id is
+/// left.
+fn halve(items: &mut [Item]) -> usize {
+    let middle = items.len() / 2;
+    let centers = around_centers(items);
+    let axis = (centers.max - centers.min).max_position();
+    items.select_nth_unstable_by(middle, |a, b| {
+        let along = a.center()[axis].total_cmp(&b.center()[axis]);
+        along.then(a.primitive.cmp(&b.primitive))
+    });
+    middle
+}
+
+fn around_centers(items: &[Item]) -> FrameBox {
+    items.iter().fold(FrameBox::EMPTY, |bounds, item| {
+        let center = item.center();
+        bounds.union(FrameBox { min: center, max: center })
+    })
+}
+
+/// Bins of equal width along the three axes of the box around the centres.
+#[derive(Clone, Copy)]
+struct Bins {
+    start: Vec3A,
+    per_unit: Vec3A,
+}
+
+impl Bins {
+    fn of(centers: FrameBox) -> Self {
+        let width = centers.max - centers.min;
+        // Where all centres coincide all are in bin 0.
+        let per_unit = Vec3A::splat(BINS as f32) / width.max(Vec3A::splat(f32::MIN_POSITIVE));
+        Self { start: centers.min, per_unit }
+    }
+
+    /// An item's bin on each axis.
+    #[inline(always)]
+    fn index(&self, item: &Item) -> [usize; 3] {
+        let position = (item.center() - self.start) * self.per_unit;
+        // The last centre is at the far end of the last bin.
+        position.min(Vec3A::splat(BINS as f32 - 1.0)).to_array().map(|x| x as usize)
+    }
+}
+
+/// What lies in a bin, or in several.
+#[derive(Clone, Copy)]
+struct Content {
+    bounds: FrameBox,
+    count: u32,
+}
+
+impl Content {
+    const NONE: Self = Self { bounds: FrameBox::EMPTY, count: 0 };
+
+    fn and(self, other: Self) -> Self {
+        Self { bounds: self.bounds.union(other.bounds), count: self.count + other.count }
+    }
+
+    /// Area times primitives.
+    fn cost(&self) -> f32 {
+        self.bounds.half_area() * self.count as f32
+    }
+}
+
+/// A plane between two bins, and what the primitives on its sides cost.
+struct Plane {
+    bins: Bins,
+    axis: usize,
+    /// The last bin on the left side.
+    last: usize,
+    cost: f32,
+}
+
+impl Plane {
+    fn partition(&self, items: &mut [Item]) -> usize {
+        let mut left = 0;
+        for k in 0..items.len() {
+            if self.bins.index(&items[k])[self.axis] <= self.last {
+                items.swap(left, k);
+                left += 1;
+            }
+        }
+        left
+    }
+}
+
+/// The cheapest plane with items on both sides; there is none if all centres coincide.
+#[inline(never)] // The bins must not take room on the stack of the recursion.
+fn best_plane(items: &[Item]) -> Option<Plane> {
+    let bins = Bins::of(around_centers(items));
+    let mut contents = [[Content::NONE; BINS]; 3];
+    for item in items {
+        for (contents, index) in contents.iter_mut().zip(bins.index(item)) {
+            contents[index] = contents[index].and(Content { bounds: item.bounds, count: 1 });
+        }
+    }
+    let mut best: Option<Plane> = None;
+    for (axis, contents) in contents.iter().enumerate() {
+        let mut right_of = [Content::NONE; BINS];
+        for k in (1..BINS).rev() {
+            right_of[k - 1] = right_of[k].and(contents[k]);
+        }
+        let mut left = Content::NONE;
+        for last in 0..BINS - 1 {
+            left = left.and(contents[last]);
+            let right = right_of[last];
+            if left.count == 0 || right.count == 0 {
+                continue;
+            }
+            let cost = left.cost() + right.cost();
+            if best.as_ref().is_none_or(|best| cost < best.cost) {
+                best = Some(Plane { bins, axis, last, cost });
+            }
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lancer_core::scene::PrimitiveId;
+
+    /// A box of half a unit around each point.
+    fn items(centers: impl IntoIterator<Item = Vec3A>) -> Vec<Item> {
+        let around = |center| FrameBox { min: center - 0.25, max: center + 0.25 };
+        let item = |(id, center)| Item { bounds: around(center), primitive: PrimitiveId(id) };
+        (0..).zip(centers).map(item).collect()
+    }
+
+    fn depth(nodes: &[TreeNode], node: usize) -> usize {
+        let node = &nodes[node];
+        if node.is_leaf() {
+            return 0;
+        }
+        let below = node.children().map(|child| depth(nodes, child));
+        1 + below[0].max(below[1])
+    }
+
+    #[test]
+    fn the_median_leaves_as_many_on_both_sides() {
+        let mut row = items([5.0, 1.0, 3.0, 0.0, 4.0, 2.0].map(|x| Vec3A::new(0.0, x, 0.5 * x)));
+        assert_eq!(halve(&mut row), 3);
+        assert!(row[..3].iter().all(|item| item.center().y < 5.0));
+        // Where centres coincide ids decide.
+        let mut alike = items([Vec3A::ONE; 5]);
+        alike.reverse();
+        assert_eq!(halve(&mut alike), 2);
+        assert!(alike[..2].iter().all(|item| item.primitive < PrimitiveId(2)));
+    }
+
+    /// By hand: cubes of side 1/2 stand at x = 0, 1 and 8. A cut before the last leaves a box of sides
+    /// 3/2, 1/2, 1/2 and a cube, of half areas 7/4 and 3/4: 2 · 7/4 + 3/4.
+    #[test]
+    fn the_heuristic_cuts_where_there_is_nothing() {
+        let mut row = items([8.0, 0.0, 1.0].map(|x| Vec3A::new(x, 0.0, 0.0)));
+        let plane = best_plane(&row).unwrap();
+        assert_eq!((plane.axis, plane.cost), (0, 4.25));
+        assert_eq!(plane.partition(&mut row), 2);
+        assert_eq!(row[2].primitive, PrimitiveId(0));
+        assert!(best_plane(&items([Vec3A::ONE; 3])).is_none());
+    }
+
+    /// Near boxes are cheaper to test than to tell apart; far ones are not.
+    #[test]
+    fn a_leaf_is_made_where_a_split_does_not_pay() {
+        let parts = |distance| {
+            let mut pair = items([Vec3A::ZERO, Vec3A::X * distance]);
+            let around = pair[0].bounds.union(pair[1].bounds);
+            divide(&mut pair, around, 0, Split::Sah)
+        };
+        // With two cubes of half area 3/4 a split costs A + 3/2, a leaf 2 A, and A = 3/4 + distance.
+        assert_eq!((parts(0.5), parts(1.0)), (None, Some(1)));
+    }
+
+    /// From the limit on a subtree is halved at every step: so no tree is deeper than the limit says.
+    #[test]
+    fn below_the_limit_the_tree_is_halved() {
+        // Each step along this row is nine tenths of the last: the heuristic takes off the first few.
+        let row = || items((0..1 << 10).map(|k| Vec3A::X * 0.9_f32.powi(k)));
+        let balanced = subtree(&mut row(), 0, SAH_DEPTH, Split::Sah);
+        assert_eq!(depth(&balanced, 0), 8);
+        assert!(depth(&tree(&mut row(), Split::Sah), 0) > 8);
+    }
+}
