@@ -5,7 +5,12 @@
 //! bit and the same primitive. To that end boxes are culled conservatively and primitives are decided
 //! by one shared `f64` test, [`lancer_core::intersector::Probe`].
 
+mod cells;
 mod four_boxes;
+mod grid;
 mod obvhs_bvh2;
+mod touching;
 
+pub use cells::Cell;
+pub use grid::{Grid, GridBuilder};
 pub use obvhs_bvh2::ObvhsBvh2;
