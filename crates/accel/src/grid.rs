@@ -124,7 +124,10 @@ impl<'s> Grid<'s> {
     /// The cells that a ray visits in `range`, near ones first, whether or not it hits anything in them.
     pub fn cells(&self, ray: &Ray, range: Interval) -> impl Iterator<Item = Cell<'_>> {
         let mut path = self.path(ray, range);
-        std::iter::from_fn(move || path.as_mut()?.next(range.max, &mut ()))
+        std::iter::from_fn(move || match path.as_mut()? {
+            Path::Line(line) => line.next(range.max, &mut ()),
+            Path::Slices(slices) => slices.next(range.max, &mut ()),
+        })
     }
 
     /// Visits the primitives of cell after cell along the ray, until `done` says so or the closest hit is
@@ -137,8 +140,11 @@ impl<'s> Grid<'s> {
         observer: &mut O,
         done: impl Fn(&Probe) -> bool,
     ) -> Option<Hit> {
-        let path = self.path(ray, range)?;
-        search(path, Probe::new(self.scene, ray, range), self.mailboxing, observer, done)
+        let probe = Probe::new(self.scene, ray, range);
+        match self.path(ray, range)? {
+            Path::Line(line) => search(line, probe, self.mailboxing, observer, done),
+            Path::Slices(slices) => search(slices, probe, self.mailboxing, observer, done),
+        }
     }
 
     #[inline]
@@ -147,10 +153,10 @@ impl<'s> Grid<'s> {
         if rounding > self.slack {
             let Bounds3 { min, max } = grown(self.bounds, rounding);
             Slabs::new(ray).enter(min, max, range)?;
-            return Some(Path::Slices(Box::new(self.slices(*ray, rounding))));
+            return Some(Path::Slices(Slices(Box::new(self.slices(*ray, rounding)))));
         }
         let enter = Slabs::new(ray).enter(self.bounds.min, self.bounds.max, range)?;
-        Some(Path::Line(Line { grid: self, dda: Dda::new(&self.lattice, ray, enter) }))
+        Some(Path::Line(Line { grid: self, dda: Dda::new(self.lattice, ray, enter) }))
     }
 
     /// The cells that a ray might visit which errs by up to `rounding`: slice by slice along its longest
@@ -228,37 +234,37 @@ impl Intersector for Grid<'_> {
 
 /// How a ray finds its cells.
 enum Path<'g> {
-    /// Along its line.
     Line(Line<'g>),
-    /// From too far away for that.
-    Slices(Box<dyn Iterator<Item = Cell<'g>> + 'g>),
+    Slices(Slices<'g>),
 }
 
-impl<'g> RayCells<'g> for Path<'g> {
-    #[inline]
-    fn next<O: Observer>(&mut self, max: f64, observer: &mut O) -> Option<Cell<'g>> {
-        let cell = match self {
-            Self::Line(line) => line.next(max)?,
-            Self::Slices(cells) => cells.next().filter(|cell| cell.enter * Slabs::NEAR <= max)?,
-        };
-        observer.cell_visit();
-        Some(cell)
-    }
-}
-
+/// The cells along the ray's line.
 struct Line<'g> {
     grid: &'g Grid<'g>,
-    dda: Dda<'g>,
+    dda: Dda,
 }
 
-impl<'g> Line<'g> {
+impl<'g> RayCells<'g> for Line<'g> {
     #[inline]
-    fn next(&mut self, max: f64) -> Option<Cell<'g>> {
+    fn next<O: Observer>(&mut self, max: f64, observer: &mut O) -> Option<Cell<'g>> {
         let enter = self.dda.enter;
         if enter * Slabs::NEAR > max {
             return None;
         }
-        self.dda.next().map(|cell| self.grid.cell(cell, enter))
+        let cell = self.dda.next()?;
+        observer.cell_visit();
+        Some(self.grid.cell(cell, enter))
+    }
+}
+
+/// The cells that a ray from far away might visit.
+struct Slices<'g>(Box<dyn Iterator<Item = Cell<'g>> + 'g>);
+
+impl<'g> RayCells<'g> for Slices<'g> {
+    fn next<O: Observer>(&mut self, max: f64, observer: &mut O) -> Option<Cell<'g>> {
+        let cell = self.0.next().filter(|cell| cell.enter * Slabs::NEAR <= max)?;
+        observer.cell_visit();
+        Some(cell)
     }
 }
 
@@ -356,53 +362,63 @@ fn cells_between([low, high]: [IVec3; 2]) -> impl Iterator<Item = IVec3> {
 /// The original adds a constant to t_k at each step, and its rounding adds up: in `f32` it skips cells.
 /// Here each t_k is computed anew.
 #[doc(alias = "algo:3d-dda")]
-struct Dda<'g> {
-    lattice: &'g Lattice,
-    origin: DVec3,
-    direction: DVec3,
-    /// The parameter at which the ray enters `cell`.
+struct Dda {
+    /// The parameter at which the ray enters the next cell to be returned.
     enter: f64,
-    cell: IVec3,
-    /// By what a step changes the cell, and which one is the last.
-    step: IVec3,
-    last: IVec3,
-    /// Per axis the parameter at which the ray meets the plane ahead: never, if it runs along it.
-    crossing: DVec3,
+    axes: [Axis; 3],
     inside: bool,
 }
 
-impl<'g> Dda<'g> {
+/// A ray between the planes of one axis.
+#[derive(Clone, Copy)]
+struct Axis {
+    min: f64,
+    width: f64,
+    origin: f64,
+    direction: f64,
+    /// The parameter at which the ray meets the plane ahead: never, if it runs along it.
+    crossing: f64,
+    cell: i32,
+    /// By what a step changes the cell, and the last one.
+    step: i32,
+    last: i32,
+    /// From a cell to the plane ahead.
+    ahead: i32,
+}
+
+impl Dda {
     /// The walk of a ray that enters the lattice, or starts in it, at `enter`.
     #[inline]
-    fn new(lattice: &'g Lattice, ray: &Ray, enter: f64) -> Self {
-        let cell = lattice.cell_of(ray.at(enter));
-        let (mut step, mut last) = (IVec3::ONE, lattice.resolution - 1);
-        for axis in 0..3 {
-            if ray.direction[axis] < 0.0 {
-                (step[axis], last[axis]) = (-1, 0);
-            }
-        }
-        let Ray { origin, direction } = *ray;
-        let crossing = DVec3::INFINITY;
-        let mut dda =
-            Self { lattice, origin, direction, enter, cell, step, last, crossing, inside: true };
-        (0..3).for_each(|axis| dda.look_ahead(axis));
-        dda
+    fn new(lattice: Lattice, ray: &Ray, enter: f64) -> Self {
+        let start = lattice.cell_of(ray.at(enter));
+        let axes = [0, 1, 2].map(|k| {
+            let (min, width) = (lattice.min[k], lattice.width[k]);
+            let (origin, direction, cell) = (ray.origin[k], ray.direction[k], start[k]);
+            let (step, last, ahead) =
+                if direction < 0.0 { (-1, 0, 0) } else { (1, lattice.resolution[k] - 1, 1) };
+            let crossing = f64::INFINITY;
+            let mut axis =
+                Axis { min, width, origin, direction, crossing, cell, step, last, ahead };
+            axis.look_ahead();
+            axis
+        });
+        Self { enter, axes, inside: true }
     }
+}
 
+impl Axis {
     /// Finds where the ray meets the plane ahead.
     #[inline]
-    fn look_ahead(&mut self, axis: usize) {
+    fn look_ahead(&mut self) {
         // 0 and −0 meet no plane: the quotient would be NaN for a ray that runs in one.
-        if self.direction[axis] != 0.0 {
-            let plane = self.cell[axis] + i32::from(self.step[axis] > 0);
-            self.crossing[axis] =
-                (self.lattice.plane(axis, plane) - self.origin[axis]) / self.direction[axis];
+        if self.direction != 0.0 {
+            let plane = self.min + f64::from(self.cell + self.ahead) * self.width;
+            self.crossing = (plane - self.origin) / self.direction;
         }
     }
 }
 
-impl Iterator for Dda<'_> {
+impl Iterator for Dda {
     type Item = IVec3;
 
     #[inline]
@@ -410,12 +426,20 @@ impl Iterator for Dda<'_> {
         if !self.inside {
             return None;
         }
-        let cell = self.cell;
-        let axis = self.crossing.min_position();
-        self.enter = self.crossing[axis];
-        self.inside = cell[axis] != self.last[axis];
-        self.cell[axis] += self.step[axis];
-        self.look_ahead(axis);
+        let [x, y, z] = &self.axes;
+        let cell = IVec3::new(x.cell, y.cell, z.cell);
+        let nearest = if x.crossing < y.crossing {
+            if x.crossing < z.crossing { 0 } else { 2 }
+        } else if y.crossing < z.crossing {
+            1
+        } else {
+            2
+        };
+        let axis = &mut self.axes[nearest];
+        self.enter = axis.crossing;
+        self.inside = axis.cell != axis.last;
+        axis.cell += axis.step;
+        axis.look_ahead();
         Some(cell)
     }
 }
