@@ -179,7 +179,8 @@ impl<'s> Grid<'s> {
         })
     }
 
-    #[inline]
+    /// Inlined, so that a search, which does not ask for the cell's box, does not pay for it.
+    #[inline(always)]
     fn cell(&self, cell: IVec3, enter: f64) -> Cell<'_> {
         let index = self.lattice.index(cell);
         let row = self.first[index] as usize..self.first[index + 1] as usize;
@@ -245,7 +246,7 @@ struct Line<'g> {
 }
 
 impl<'g> RayCells<'g> for Line<'g> {
-    #[inline]
+    #[inline(always)]
     fn next<O: Observer>(&mut self, max: f64, observer: &mut O) -> Option<Cell<'g>> {
         let enter = self.dda.enter;
         if enter * Slabs::NEAR > max {
@@ -421,7 +422,7 @@ impl Axis {
 impl Iterator for Dda {
     type Item = IVec3;
 
-    #[inline]
+    #[inline(always)]
     fn next(&mut self) -> Option<IVec3> {
         if !self.inside {
             return None;

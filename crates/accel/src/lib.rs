@@ -9,8 +9,10 @@ mod cells;
 mod four_boxes;
 mod grid;
 mod obvhs_bvh2;
+mod octree;
 mod touching;
 
 pub use cells::Cell;
 pub use grid::{Grid, GridBuilder};
 pub use obvhs_bvh2::ObvhsBvh2;
+pub use octree::{Octree, OctreeBuilder};
