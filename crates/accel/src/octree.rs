@@ -277,7 +277,7 @@ impl<'s> Octree<'s> {
         }
         for primitive in self.scene.primitives() {
             for point in surface_points(self.scene, primitive) {
-                if !self.leaf_at(point).contains(&primitive) {
+                if self.leaf_at(point).binary_search(&primitive).is_err() {
                     return Err(format!("{primitive:?} is missing from the leaf at {point}"));
                 }
             }
