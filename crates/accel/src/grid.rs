@@ -49,7 +49,7 @@ pub struct GridBuilder {
 
 impl Default for GridBuilder {
     fn default() -> Self {
-        Self { density: 2.0, mailboxing: true }
+        Self { density: 1.0, mailboxing: true }
     }
 }
 
@@ -306,8 +306,11 @@ impl Lattice {
             |axes: usize| (sorted[..axes].iter().product::<f64>() / cells).powf(1.0 / axes as f64);
         let axes = (2..=3).rev().find(|&axes| side(axes) < sorted[axes - 1]).unwrap_or(1);
         let most = (extent / (16.0 * slack)).min(DVec3::splat(MAX_RESOLUTION));
-        // The last comparison also turns the NaN of a scene without extent into one cell.
-        let resolution = (extent / (side(axes) * largest)).min(most).round().max(DVec3::ONE);
+        let resolution = if largest > 0.0 {
+            (extent / (side(axes) * largest)).min(most).round().max(DVec3::ONE)
+        } else {
+            DVec3::ONE
+        };
         Self { min: bounds.min, width: extent / resolution, resolution: resolution.as_ivec3() }
     }
 
@@ -429,13 +432,8 @@ impl Iterator for Dda {
         }
         let [x, y, z] = &self.axes;
         let cell = IVec3::new(x.cell, y.cell, z.cell);
-        let nearest = if x.crossing < y.crossing {
-            if x.crossing < z.crossing { 0 } else { 2 }
-        } else if y.crossing < z.crossing {
-            1
-        } else {
-            2
-        };
+        let of_two = usize::from(y.crossing < x.crossing);
+        let nearest = if z.crossing < self.axes[of_two].crossing { 2 } else { of_two };
         let axis = &mut self.axes[nearest];
         self.enter = axis.crossing;
         self.inside = axis.cell != axis.last;
