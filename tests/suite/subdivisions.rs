@@ -3,7 +3,7 @@
 use glam::DVec3;
 use lancer_accel::{Grid, GridBuilder, Octree, OctreeBuilder};
 use lancer_core::generate::icosphere;
-use lancer_core::geometry::{Interval, Ray};
+use lancer_core::geometry::{Bounds3, Interval, Ray};
 use lancer_core::intersector::{Hit, Intersector, LinearScan, Probe, TestCounts};
 use lancer_core::scene::{MaterialId, Mesh, Scene};
 
@@ -126,7 +126,7 @@ fn the_leaves_of_an_octree_fill_its_cube() {
     let octree = Octree::build(&scene);
     let volume: f64 =
         octree.leaves().map(|(cell, _)| (cell.max - cell.min).element_product()).sum();
-    let whole = octree.leaves().map(|(cell, _)| cell).reduce(|a, b| a.union(b)).unwrap();
+    let whole = octree.leaves().map(|(cell, _)| cell).reduce(Bounds3::union).unwrap();
     let wanted = (whole.max - whole.min).element_product();
     assert!((volume / wanted - 1.0).abs() < 1e-12, "{volume} of {wanted}");
 }

@@ -54,13 +54,17 @@ pub struct OctreeBuilder {
 
 impl Default for OctreeBuilder {
     fn default() -> Self {
-        Self { leaf_size: 8, max_depth: 16, mailboxing: true }
+        Self { leaf_size: 8, max_depth: 24, mailboxing: true }
     }
 }
 
 /// References per primitive at most, on average. Then no more cubes are cut: large primitives that
 /// overlap would fill the memory.
 const MAX_REFERENCES: usize = 32;
+
+/// What it costs to open a cube and to visit its parts, in primitive tests. Without it a vertex of more
+/// triangles than a leaf may hold would be cut out of its surroundings down to the last level.
+const OPENING: usize = 5;
 
 #[derive(Clone, Copy, Debug)]
 enum Node {
@@ -126,8 +130,8 @@ impl OctreeBuilder {
             let parts = cuttable.then(|| cut(scene, slack, &uncut)).filter(|parts| {
                 let after: usize = parts.iter().map(Vec::len).sum();
                 // A ray that meets the cube meets each of its parts with a probability of 1/4, the
-                // ratio of their surfaces: with four times the references it is tested as often.
-                after < 4 * count && references - count + after <= most
+                // ratio of their surfaces.
+                after + 4 * OPENING < 4 * count && references - count + after <= most
             });
             if let Some(parts) = parts {
                 let first = nodes.len();
