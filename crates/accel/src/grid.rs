@@ -18,8 +18,8 @@ use crate::touching::{Footprint, grown, overlap, rounding, slack, surface_points
 /// closest hit is nearer than the next cell. A ray that starts so far away that its own rounding exceeds
 /// what the primitives were grown by is walked slice by slice, with the neighbours that it might touch.
 ///
-/// *Wins* where the primitives are of one size and evenly spread: a step costs less than a node of a tree,
-/// the build next to nothing. *Loses* where they are not, the « théière dans un stade » (teapot in a
+/// *Wins* where primitives of one size fill the space evenly, so that a ray soon hits one: a step costs
+/// less than a node of a tree, the build next to nothing. *Loses* where they are not, the « théière dans un stade » (teapot in a
 /// stadium): cells that suit the large are full of the small.
 ///
 /// Sources: Fujimoto, Tanaka, Iwata, *ARTS: Accelerated Ray-Tracing System*, IEEE CG&A 6(4), 1986;
