@@ -19,8 +19,9 @@ use crate::touching::{Footprint, grown, overlap, rounding, slack, surface_points
 /// what the primitives were grown by is walked slice by slice, with the neighbours that it might touch.
 ///
 /// *Wins* where primitives of one size fill the space evenly, so that a ray soon hits one: a step costs
-/// less than a node of a tree, the build next to nothing. *Loses* where they are not, the « théière dans un stade » (teapot in a
-/// stadium): cells that suit the large are full of the small.
+/// less than a node of a tree, the build next to nothing. *Loses* where there is much empty space, which
+/// it crosses cell by cell, and in the « théière dans un stade » (teapot in a stadium): cells that suit
+/// the large are full of the small.
 ///
 /// Sources: Fujimoto, Tanaka, Iwata, *ARTS: Accelerated Ray-Tracing System*, IEEE CG&A 6(4), 1986;
 /// Amanatides and Woo, *A Fast Voxel Traversal Algorithm for Ray Tracing*, Eurographics 1987.
