@@ -14,5 +14,6 @@ mod mutator;
 mod optics;
 mod random;
 mod spheres;
+mod subdivisions;
 mod watertight;
 mod whitted;

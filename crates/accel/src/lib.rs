@@ -7,15 +7,22 @@
 
 mod binary_tree;
 mod bvh;
+mod cells;
 mod four_boxes;
 mod four_wide;
+mod grid;
 #[cfg(test)]
 mod hard_sets;
 mod obvhs_bvh2;
 mod obvhs_cwbvh;
+mod octree;
 mod pending;
+mod touching;
 
 pub use binary_tree::{BinaryTree, TreeStatistics};
 pub use bvh::{Bvh, Split};
+pub use cells::Cell;
+pub use grid::{Grid, GridBuilder};
 pub use obvhs_bvh2::ObvhsBvh2;
 pub use obvhs_cwbvh::ObvhsCwbvh;
+pub use octree::{Octree, OctreeBuilder};
