@@ -6,6 +6,10 @@
 //! by one shared `f64` test, [`lancer_core::intersector::Probe`].
 
 mod four_boxes;
+mod kd;
 mod obvhs_bvh2;
+mod spatial;
 
+pub use kd::{KdBuilder, KdTree};
 pub use obvhs_bvh2::ObvhsBvh2;
+pub use spatial::Leaf;
