@@ -2,7 +2,7 @@
 //! aimed where indexes go wrong.
 
 use glam::DVec3;
-use lancer_accel::{KdTree, ObvhsBvh2};
+use lancer_accel::{BspTree, KdTree, ObvhsBvh2};
 use lancer_core::generate::icosphere;
 use lancer_core::geometry::{Interval, Ray, Sphere};
 use lancer_core::intersector::{Intersector, LinearScan, TestCounts};
@@ -67,9 +67,10 @@ fn aimed(class: &str, mesh: &Mesh, offset: DVec3, random: &mut Random) -> Ray {
 type Build = for<'s> fn(&'s Scene) -> Box<dyn Intersector + 's>;
 
 /// Every index of chapter 4 but the oracle.
-const INDEXES: [(&str, Build); 2] = [
+const INDEXES: [(&str, Build); 3] = [
     ("obvhs-bvh2", |scene| Box::new(ObvhsBvh2::build(scene))),
     ("kd", |scene| Box::new(KdTree::build(scene))),
+    ("bsp", |scene| Box::new(BspTree::build(scene))),
 ];
 
 fn assert_agreement(scene: &Scene, offset: DVec3, rays: usize) {
