@@ -93,6 +93,94 @@ pub(crate) fn clip(polygon: &[DVec3], distance: impl Fn(DVec3) -> f64) -> Polygo
     part
 }
 
+/// Scenes on which builders of trees go wrong.
+#[cfg(test)]
+pub(crate) mod hard {
+    use glam::{DAffine3, DVec3};
+    use lancer_core::Rgb;
+    use lancer_core::generate::{icosphere, sphere_flake};
+    use lancer_core::scene::{Camera, Material, MaterialId, Mesh, Scene};
+    use rand_pcg::Pcg64;
+    use rand_pcg::rand_core::Rng;
+
+    pub(crate) fn scene_of(mesh: Mesh) -> Scene {
+        Scene {
+            camera: Camera { eye: DVec3::Z, look_at: DVec3::ZERO, up: DVec3::Y, fov: 40.0 },
+            mesh,
+            spheres: Vec::new(),
+            materials: vec![Material::matte(Rgb::splat(0.5))],
+            lights: Vec::new(),
+            ambient: Rgb::ZERO,
+            background: Rgb::ZERO,
+        }
+    }
+
+    /// Random points in the cube [−1, 1]³.
+    pub(crate) fn points(seed: u128) -> impl FnMut() -> DVec3 {
+        let mut random = Pcg64::new(seed, 1);
+        let mut coordinate = move || f64::from(random.next_u32()) / f64::from(1_u32 << 31) - 1.0;
+        move || DVec3::new(coordinate(), coordinate(), coordinate())
+    }
+
+    /// Triangles of a given size at random.
+    pub(crate) fn soup(count: usize, size: f64) -> Mesh {
+        let mut point = points(3);
+        let mut mesh = Mesh::default();
+        for _ in 0..count {
+            let corner = point();
+            push(&mut mesh, [corner, corner + size * point(), corner + size * point()]);
+        }
+        mesh
+    }
+
+    fn push(mesh: &mut Mesh, corners: [DVec3; 3]) {
+        let first = mesh.positions.len() as u32;
+        mesh.positions.extend(corners);
+        mesh.push_face(MaterialId(0), &[[first, first + 1, first + 2]]);
+    }
+
+    fn scaled(mesh: &Mesh, scale: DVec3) -> Mesh {
+        let mut result = Mesh::default();
+        result.append(mesh, DAffine3::from_scale(scale), 0);
+        result
+    }
+
+    pub(crate) fn scenes() -> Vec<(&'static str, Scene)> {
+        let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
+        let repeated = |corners: [DVec3; 3], count: usize| {
+            let mut mesh = Mesh::default();
+            (0..count).for_each(|_| push(&mut mesh, corners));
+            mesh
+        };
+        let mut uneven = scaled(&soup(100_000, 1e-3), DVec3::new(1.0, 1.0, 0.01));
+        push(&mut uneven, [-1e6 * x, 1e6 * y, 1e6 * x + z]);
+        let mut far = Mesh::default();
+        far.append(&icosphere(3), DAffine3::from_translation(DVec3::new(1e6, -2e6, 3e6)), 0);
+        let mut meshes = vec![
+            ("nothing", Mesh::default()),
+            ("one triangle", repeated([x, y, z], 1)),
+            ("identical", repeated([x, y, z], 100_000)),
+            ("identical, in an axis plane", repeated([x, y, DVec3::ZERO], 1000)),
+            ("points", repeated([x, x, x], 1000)),
+            ("points at the origin", repeated([DVec3::ZERO; 3], 1000)),
+            ("coplanar", scaled(&soup(3000, 0.1), DVec3::new(1.0, 1.0, 0.0))),
+            ("on a line", scaled(&soup(3000, 0.1), DVec3::new(1.0, 0.0, 0.0))),
+            ("uneven", uneven),
+            ("far from the origin", far),
+            ("crossing each other", soup(1000, 1.5)),
+        ];
+        for scale in [1e-30, 1e30] {
+            meshes.push(("of extreme size", scaled(&icosphere(3), DVec3::splat(scale))));
+        }
+        let mut scenes: Vec<_> =
+            meshes.into_iter().map(|(name, mesh)| (name, scene_of(mesh))).collect();
+        let mut mixed = scene_of(icosphere(2));
+        mixed.spheres = sphere_flake(3, MaterialId(0));
+        scenes.push(("spheres and triangles", mixed));
+        scenes
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
