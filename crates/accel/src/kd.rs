@@ -16,7 +16,7 @@ use crate::spatial::{
 /// convex part of it with the probability S(part) / S(cell), so a plane costs
 ///
 /// ```text
-/// eq:sah-split    C = C_t + C_i (N_below S_below + N_above S_above) / S
+/// C = C_t + C_i (N_below S_below + N_above S_above) / S
 /// ```
 ///
 /// and the cheapest one is taken, or none when testing all N primitives, C_i N, is cheaper. Planes that
@@ -73,7 +73,7 @@ pub struct KdBuilder {
 
 impl Default for KdBuilder {
     fn default() -> Self {
-        Self { test_cost: 0.4, empty_bonus: 0.2, perfect_splits: true }
+        Self { test_cost: 0.4, empty_bonus: 0.1, perfect_splits: true }
     }
 }
 
@@ -213,7 +213,7 @@ impl KdBuilder {
         (best.cost < leaf_cost).then_some(best)
     }
 
-    /// eq:sah-split
+    /// The cost C of a plane, for `counts` primitives below and above it.
     fn cost(&self, cell: Bounds3, axis: usize, split: f64, counts: [usize; 2]) -> f64 {
         let extent = cell.max - cell.min;
         // Only quotients of areas matter: in units of the cell nothing over- or underflows.
