@@ -28,7 +28,7 @@ use crate::spatial::{
 /// O(n log n) steps to build when few polygons are cut; in the worst case, where all cross each other, O(n²)
 /// pieces, so their number is limited and the leaves grow instead. About O(log n) cells for a ray. Wins where
 /// few large walls in oblique directions bound the space: rooms, the levels of games. Loses on fine meshes to
-/// a kd-tree: nothing makes it cut off empty space. Some 600 000 triangles take 10 s to build.
+/// a kd-tree: nothing makes it cut off empty space. A million triangles take about 10 s to build.
 ///
 /// Sources: Fuchs, Kedem, Naylor, *On Visible Surface Generation by A Priori Tree Structures*,
 /// SIGGRAPH 1980; Kaplan, *Space-Tracing, a Constant Time Ray-Tracer*, SIGGRAPH 1985 course notes.

@@ -78,7 +78,7 @@ impl Default for KdBuilder {
 }
 
 /// Up to this many primitives every candidate plane is tried, above as many as there are bins.
-const SWEEP: usize = 128;
+const SWEEP: usize = 32;
 const BINS: usize = 64;
 
 /// A primitive in a cell that is being divided.
@@ -641,7 +641,7 @@ mod tests {
         let tree = KdTree::build(&scene);
         let leaves = tree.leaves();
         let mut wrong = 0;
-        for ray in rays(2000) {
+        for ray in rays(5000) {
             let wanted = tree.closest_hit(&ray, Interval::POSITIVE);
             let in_leaf = |&leaf: &usize| {
                 let mut probe = Probe::new(&scene, &ray, Interval::POSITIVE);
