@@ -2,7 +2,7 @@
 //! aimed where indexes go wrong.
 
 use glam::DVec3;
-use lancer_accel::{BinaryTree, Bvh, Grid, ObvhsBvh2, ObvhsCwbvh, Octree, Split};
+use lancer_accel::{BinaryTree, BspTree, Bvh, Grid, KdTree, ObvhsBvh2, ObvhsCwbvh, Octree, Split};
 use lancer_core::generate::icosphere;
 use lancer_core::geometry::{Interval, Ray, Sphere};
 use lancer_core::intersector::{Intersector, LinearScan, TestCounts};
@@ -67,7 +67,7 @@ fn aimed(class: &str, mesh: &Mesh, offset: DVec3, random: &mut Random) -> Ray {
 type Build = for<'s> fn(&'s Scene) -> Box<dyn Intersector + 's>;
 
 /// Every index of chapter 4 but the oracle.
-const INDEXES: [(&str, Build); 7] = [
+const INDEXES: [(&str, Build); 9] = [
     ("obvhs-bvh2", |scene| Box::new(ObvhsBvh2::build(scene))),
     ("obvhs-cwbvh", |scene| Box::new(ObvhsCwbvh::build(scene))),
     ("bvh", |scene| Box::new(Bvh::build(scene))),
@@ -75,6 +75,8 @@ const INDEXES: [(&str, Build); 7] = [
     ("bvh, recursive", |scene| Box::new(BinaryTree::build(scene, Split::Sah))),
     ("grid", |scene| Box::new(Grid::build(scene))),
     ("octree", |scene| Box::new(Octree::build(scene))),
+    ("kd", |scene| Box::new(KdTree::build(scene))),
+    ("bsp", |scene| Box::new(BspTree::build(scene))),
 ];
 
 fn assert_agreement(scene: &Scene, offset: DVec3, rays: usize) {

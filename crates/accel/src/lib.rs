@@ -6,6 +6,7 @@
 //! by one shared `f64` test, [`lancer_core::intersector::Probe`].
 
 mod binary_tree;
+mod bsp;
 mod bvh;
 mod cells;
 mod four_boxes;
@@ -13,16 +14,21 @@ mod four_wide;
 mod grid;
 #[cfg(test)]
 mod hard_sets;
+mod kd;
 mod obvhs_bvh2;
 mod obvhs_cwbvh;
 mod octree;
 mod pending;
+mod spatial;
 mod touching;
 
 pub use binary_tree::{BinaryTree, TreeStatistics};
+pub use bsp::{BspBuilder, BspTree, Planes};
 pub use bvh::{Bvh, Split};
 pub use cells::Cell;
 pub use grid::{Grid, GridBuilder};
+pub use kd::{KdBuilder, KdTree};
 pub use obvhs_bvh2::ObvhsBvh2;
 pub use obvhs_cwbvh::ObvhsCwbvh;
 pub use octree::{Octree, OctreeBuilder};
+pub use spatial::Leaf;

@@ -78,6 +78,12 @@ impl Slabs {
     /// The parameter at which the ray enters the box, rounded down, if it meets the box in `range`.
     #[inline]
     pub fn enter(&self, min: DVec3, max: DVec3, range: Interval) -> Option<f64> {
+        self.cross(min, max, range).map(|inside| inside.min)
+    }
+
+    /// The part of `range` in which the ray is in the box, rounded outwards, if it meets the box.
+    #[inline]
+    pub fn cross(&self, min: DVec3, max: DVec3, range: Interval) -> Option<Interval> {
         let (mut near, mut far) = (range.min, range.max);
         for axis in 0..3 {
             let (first, last) =
@@ -92,6 +98,6 @@ impl Slabs {
             }
         }
         let near = near * Self::NEAR;
-        (near <= far).then_some(near)
+        (near <= far).then_some(Interval { min: near, max: far })
     }
 }

@@ -1,0 +1,704 @@
+use glam::DVec3;
+use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
+use lancer_core::intersector::{Hit, Intersector, Observer, Probe};
+use lancer_core::scene::{PrimitiveId, Scene};
+use smallvec::SmallVec;
+
+use crate::spatial::{
+    Leaf, PARALLEL, Polygon, REFERENCES_PER_PRIMITIVE, clip, common, depth_limit, grown, margin,
+    shared_allowance, thickness,
+};
+
+/// « Subdivision spatiale irrégulière »: a tree of planes perpendicular to an axis, each put where it
+/// saves most.
+///
+/// **Built** from the top by the surface area heuristic: a random ray that meets a convex cell meets a
+/// convex part of it with the probability S(part) / S(cell), so a plane costs
+///
+/// ```text
+/// C = C_t + C_i (N_below S_below + N_above S_above) / S
+/// ```
+///
+/// and the cheapest one is taken, or none when testing all N primitives, C_i N, is cheaper. Planes that
+/// cut off empty space get a bonus. Only the bounds of primitives are candidates: between two of them
+/// N_below and N_above stay. In large nodes 64 planes per axis stand for all of them. A primitive that
+/// crosses the plane goes to both sides, and there only the part counts that is inside the cell
+/// ("perfect splits": the triangle is clipped). Depth is at most 8 + 1.3 log₂ N.
+///
+/// **Walked** near cell first: the plane divides the ray's interval, the near side is visited, the far
+/// side waits on a stack. As cells do not overlap, the first cell with a hit inside ends the walk; a
+/// primitive that reaches into this cell but is met in a later one does not.
+///
+/// O(n log n) steps to build, about O(log n) cells for a ray. Wins where primitives are of uneven
+/// size and density and much space is empty; loses to a hierarchy of volumes in memory and build time,
+/// because a primitive stands in several leaves, and is tested several times.
+///
+/// Sources: Bentley, *Multidimensional Binary Search Trees Used for Associative Searching*, CACM 18(9),
+/// 1975; MacDonald, Booth, *Heuristics for Ray Tracing Using Space Subdivision*, The Visual Computer 6,
+/// 1990; Wald, Havran, *On Building Fast kd-Trees for Ray Tracing, and on Doing That in O(N log N)*,
+/// RT 2006.
+#[doc(alias = "subdivision spatiale irrégulière")]
+#[doc(alias = "arbre kd")]
+pub struct KdTree<'s> {
+    scene: &'s Scene,
+    /// The root's cell.
+    bounds: Bounds3,
+    /// In depth-first order; the first is the root.
+    nodes: Vec<Node>,
+    /// The primitives of the leaves, leaf by leaf.
+    primitives: Vec<PrimitiveId>,
+    max_depth: u32,
+}
+
+/// A node of 16 bytes.
+#[derive(Clone, Copy)]
+enum Node {
+    /// A plane `axis` = `split`. What is below it is the next node.
+    Inner { axis: u8, above: u32, split: f64 },
+    /// A cell that is not divided: a range of the tree's primitives.
+    Leaf { first: u32, count: u32 },
+}
+
+/// How a [`KdTree`] is built.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KdBuilder {
+    /// C_i / C_t: the cost of testing a primitive, in steps down the tree. Measured, a step costs more
+    /// than a test: where it goes and whether that is in the cache is unknown until it is made.
+    pub test_cost: f64,
+    /// A plane with nothing on one side counts this share less.
+    pub empty_bonus: f64,
+    /// Primitives are clipped to their cells; otherwise only their boxes are.
+    pub perfect_splits: bool,
+}
+
+impl Default for KdBuilder {
+    fn default() -> Self {
+        Self { test_cost: 0.4, empty_bonus: 0.1, perfect_splits: true }
+    }
+}
+
+/// Up to this many primitives every candidate plane is tried, above as many as there are bins.
+const SWEEP: usize = 32;
+const BINS: usize = 64;
+
+/// A primitive in a cell that is being divided.
+struct Reference {
+    primitive: PrimitiveId,
+    /// Contains the part of the primitive that is in the cell, and what rounding adds.
+    bounds: Bounds3,
+}
+
+/// A tree as it is built, before it is laid out in memory.
+enum Subtree {
+    Inner { axis: usize, split: f64, children: Box<[Subtree; 2]> },
+    Leaf(Box<[PrimitiveId]>),
+}
+
+/// A plane and what the heuristic says about it.
+#[derive(Clone, Copy)]
+struct Candidate {
+    axis: usize,
+    split: f64,
+    cost: f64,
+}
+
+impl KdBuilder {
+    /// Builds the tree over all primitives of the scene.
+    pub fn build(self, scene: &Scene) -> KdTree<'_> {
+        let references: Vec<Reference> = scene
+            .primitives()
+            .map(|primitive| {
+                let bounds = scene.primitive_bounds(primitive);
+                Reference { primitive, bounds: grown(bounds, margin(bounds)) }
+            })
+            .collect();
+        let bounds = references.iter().map(|r| r.bounds).fold(Bounds3::EMPTY, Bounds3::union);
+        let max_depth = depth_limit(references.len());
+        let allowance = REFERENCES_PER_PRIMITIVE * references.len();
+        let root = self.subtree(scene, bounds, references, max_depth, allowance);
+        let mut tree =
+            KdTree { scene, bounds, nodes: Vec::new(), primitives: Vec::new(), max_depth };
+        tree.lay_out(root);
+        tree
+    }
+
+    fn subtree(
+        &self,
+        scene: &Scene,
+        cell: Bounds3,
+        references: Vec<Reference>,
+        levels: u32,
+        allowance: usize,
+    ) -> Subtree {
+        let leaf = |references: &[Reference]| {
+            Subtree::Leaf(references.iter().map(|reference| reference.primitive).collect())
+        };
+        let best = if levels == 0 { None } else { self.best_split(cell, &references) };
+        let Some(Candidate { axis, split, .. }) = best else { return leaf(&references) };
+        let is_on = |r: &Reference| [r.bounds.min[axis] < split, r.bounds.max[axis] > split];
+        let crossing = references.iter().filter(|r| is_on(r) == [true; 2]).count();
+        if references.len() + crossing > allowance {
+            return leaf(&references);
+        }
+
+        let cells = halves(cell, axis, split);
+        let (mut below, mut above) = (Vec::new(), Vec::new());
+        for reference in references {
+            match is_on(&reference) {
+                [true, true] => {
+                    let parts = cells.map(|half| self.part(scene, &reference, half));
+                    for (side, bounds) in [&mut below, &mut above].into_iter().zip(parts) {
+                        if !bounds.is_empty() {
+                            side.push(Reference { bounds, ..reference });
+                        }
+                    }
+                }
+                [false, true] => above.push(reference),
+                [_, false] => below.push(reference),
+            }
+        }
+        let parallel = below.len() + above.len() > PARALLEL;
+        let allowances = shared_allowance(allowance, [below.len(), above.len()]);
+        let below = || self.subtree(scene, cells[0], below, levels - 1, allowances[0]);
+        let above = || self.subtree(scene, cells[1], above, levels - 1, allowances[1]);
+        let (below, above) = if parallel { rayon::join(below, above) } else { (below(), above()) };
+        Subtree::Inner { axis, split, children: Box::new([below, above]) }
+    }
+
+    /// Bounds of the part of a primitive that is in a cell; empty when it does not come near.
+    fn part(&self, scene: &Scene, reference: &Reference, cell: Bounds3) -> Bounds3 {
+        let within = common(reference.bounds, cell);
+        if !self.perfect_splits {
+            return within;
+        }
+        let whole = scene.primitive_bounds(reference.primitive);
+        let margin = margin(whole);
+        let near = grown(within, margin);
+        let part = match scene.mesh.triangles.get(reference.primitive.0 as usize) {
+            Some(_) => {
+                let corners = scene.mesh.corners(reference.primitive.0 as usize);
+                Bounds3::of_points(clipped(corners, near))
+            }
+            // A sphere keeps its box unless the cell is in a corner of it.
+            None => {
+                let center = whole.center();
+                let nearest = center.clamp(near.min, near.max);
+                let radius = 0.5 * (whole.max - whole.min).max_element();
+                if center.distance(nearest) > radius + margin { Bounds3::EMPTY } else { whole }
+            }
+        };
+        if part.is_empty() { part } else { common(grown(part, margin), within) }
+    }
+
+    /// The cheapest plane, if it is cheaper than testing all.
+    fn best_split(&self, cell: Bounds3, references: &[Reference]) -> Option<Candidate> {
+        let leaf_cost = self.test_cost * references.len() as f64;
+        let mut best = Candidate { axis: 0, split: f64::NAN, cost: leaf_cost };
+        let mut bounds = [Vec::new(), Vec::new()];
+        for axis in 0..3 {
+            let mut consider = |split: f64, below: usize, above: usize| {
+                if cell.min[axis] < split && split < cell.max[axis] {
+                    let cost = self.cost(cell, axis, split, [below, above]);
+                    if cost < best.cost {
+                        best = Candidate { axis, split, cost };
+                    }
+                }
+            };
+            if references.len() > SWEEP {
+                consider_bins(cell, axis, references, &mut consider);
+            } else {
+                consider_all(axis, references, &mut bounds, &mut consider);
+            }
+        }
+        (best.cost < leaf_cost).then_some(best)
+    }
+
+    /// The cost C of a plane, for `counts` primitives below and above it.
+    fn cost(&self, cell: Bounds3, axis: usize, split: f64, counts: [usize; 2]) -> f64 {
+        let extent = cell.max - cell.min;
+        // Only quotients of areas matter: in units of the cell nothing over- or underflows.
+        let unit = extent / extent.max_element();
+        let share = (split - cell.min[axis]) / extent[axis];
+        let [below, above] = [share, 1.0 - share].map(|share| {
+            let mut part = unit;
+            part[axis] *= share;
+            half_area(part) / half_area(unit)
+        });
+        let tests = below * counts[0] as f64 + above * counts[1] as f64;
+        let bonus = if counts.contains(&0) { 1.0 - self.empty_bonus } else { 1.0 };
+        bonus * (1.0 + self.test_cost * tests)
+    }
+}
+
+fn half_area(extent: DVec3) -> f64 {
+    extent.x * extent.y + extent.y * extent.z + extent.z * extent.x
+}
+
+/// The two parts of a cell.
+fn halves(cell: Bounds3, axis: usize, split: f64) -> [Bounds3; 2] {
+    let [mut below, mut above] = [cell; 2];
+    below.max[axis] = split;
+    above.min[axis] = split;
+    [below, above]
+}
+
+/// The part of a triangle inside a box.
+fn clipped(corners: [DVec3; 3], bounds: Bounds3) -> Polygon {
+    let mut polygon = Polygon::from_slice(&corners);
+    for axis in 0..3 {
+        polygon = clip(&polygon, |p| bounds.min[axis] - p[axis]);
+        polygon = clip(&polygon, |p| p[axis] - bounds.max[axis]);
+    }
+    polygon
+}
+
+/// Considers equidistant planes. Counting in which bins the references start and end tells for each
+/// plane between two bins how many are on its sides.
+fn consider_bins(
+    cell: Bounds3,
+    axis: usize,
+    references: &[Reference],
+    consider: &mut impl FnMut(f64, usize, usize),
+) {
+    let (from, width) = (cell.min[axis], (cell.max[axis] - cell.min[axis]) / BINS as f64);
+    // A negative number becomes bin 0, and NaN, of a flat cell, too.
+    let bin = |coordinate: f64| (((coordinate - from) / width) as usize).min(BINS - 1);
+    let (mut starts, mut ends) = ([0; BINS], [0; BINS]);
+    for reference in references {
+        starts[bin(reference.bounds.min[axis])] += 1;
+        ends[bin(reference.bounds.max[axis])] += 1;
+    }
+    let (mut below, mut above) = (0, references.len());
+    for plane in 1..BINS {
+        below += starts[plane - 1];
+        above -= ends[plane - 1];
+        consider(from + width * plane as f64, below, above);
+    }
+}
+
+/// Considers the planes of all bounds of the references.
+fn consider_all(
+    axis: usize,
+    references: &[Reference],
+    [starts, ends]: &mut [Vec<f64>; 2],
+    consider: &mut impl FnMut(f64, usize, usize),
+) {
+    starts.clear();
+    starts.extend(references.iter().map(|reference| reference.bounds.min[axis]));
+    starts.sort_unstable_by(f64::total_cmp);
+    ends.clear();
+    ends.extend(references.iter().map(|reference| reference.bounds.max[axis]));
+    ends.sort_unstable_by(f64::total_cmp);
+
+    // Of the starts and ends in order, those before the plane.
+    let (mut started, mut ended) = (0, 0);
+    while ended < ends.len() {
+        let split = match starts.get(started) {
+            Some(&start) if start < ends[ended] => start,
+            _ => ends[ended],
+        };
+        while ended < ends.len() && ends[ended] <= split {
+            ended += 1;
+        }
+        consider(split, started, references.len() - ended);
+        while started < starts.len() && starts[started] <= split {
+            started += 1;
+        }
+    }
+}
+
+/// A cell still to be visited, and where the ray is in it.
+struct Pending {
+    node: u32,
+    inside: Interval,
+}
+
+/// What is still to be visited: never more than a tree is deep, which is less than 64 for any number
+/// of primitives that fits an id.
+type Stack = SmallVec<[Pending; 64]>;
+
+/// A thick ray along one axis. It reaches a plane before its middle does, and leaves it after.
+#[derive(Clone, Copy)]
+struct Thick {
+    /// The origin of the side that is ahead.
+    ahead: f64,
+    /// The origin of the side that is behind.
+    behind: f64,
+    inverse: f64,
+    /// The ray travels towards smaller coordinates.
+    negative: bool,
+}
+
+impl Thick {
+    fn new(origin: f64, direction: f64, thickness: f64) -> Self {
+        let inverse = 1.0 / direction;
+        let forward = thickness.copysign(direction);
+        Self {
+            ahead: origin + forward,
+            behind: origin - forward,
+            // The overflow of a denormal direction would take a tiny way for a long one.
+            inverse: if direction != 0.0 && inverse.is_infinite() { f64::NAN } else { inverse },
+            negative: direction.is_sign_negative(),
+        }
+    }
+
+    /// From when to when the ray is in the plane. In a ray parallel to the plane the two are ∞ on one
+    /// side, −∞ and ∞ in the plane; NaN, when one of its sides runs in the plane, compares as neither
+    /// before nor after anything.
+    #[inline(always)]
+    fn cross(&self, split: f64) -> [f64; 2] {
+        [(split - self.ahead) * self.inverse, (split - self.behind) * self.inverse]
+    }
+}
+
+impl<'s> KdTree<'s> {
+    /// Builds the tree over all primitives of the scene.
+    pub fn build(scene: &'s Scene) -> Self {
+        KdBuilder::default().build(scene)
+    }
+
+    /// Appends a subtree to the nodes, what is below a plane first. As deep as the tree, which has a
+    /// limit.
+    fn lay_out(&mut self, subtree: Subtree) {
+        match subtree {
+            Subtree::Leaf(primitives) => {
+                let (first, count) = (self.primitives.len() as u32, primitives.len() as u32);
+                self.nodes.push(Node::Leaf { first, count });
+                self.primitives.extend(primitives);
+            }
+            Subtree::Inner { axis, split, children } => {
+                let index = self.nodes.len();
+                let [below, above] = *children;
+                let axis = axis as u8;
+                self.nodes.push(Node::Inner { axis, above: 0, split });
+                self.lay_out(below);
+                let next = self.nodes.len() as u32;
+                self.nodes[index] = Node::Inner { axis, above: next, split };
+                self.lay_out(above);
+            }
+        }
+    }
+
+    /// Bytes held by the index, without the scene it borrows.
+    pub fn memory(&self) -> usize {
+        size_of_val(self.nodes.as_slice()) + size_of_val(self.primitives.as_slice())
+    }
+
+    /// Visits the cells along the ray until one holds a hit, or `done` says so.
+    #[inline]
+    pub fn walk<O: Observer>(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        observer: &mut O,
+        done: impl Fn(&Probe) -> bool,
+    ) -> Option<Hit> {
+        self.walk_leaves(ray, range, observer, done, |_| {})
+    }
+
+    /// [`KdTree::walk`] that also tells the nodes that are leaves.
+    #[inline(always)]
+    fn walk_leaves<O: Observer>(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        observer: &mut O,
+        done: impl Fn(&Probe) -> bool,
+        mut enter_leaf: impl FnMut(usize),
+    ) -> Option<Hit> {
+        let mut probe = Probe::new(self.scene, ray, range);
+        let thickness = thickness(ray, self.bounds);
+        let bounds = grown(self.bounds, thickness);
+        let mut inside = Slabs::new(ray).cross(bounds.min, bounds.max, range)?;
+        let (o, d) = (ray.origin.to_array(), ray.direction.to_array());
+        let axes: [Thick; 3] = std::array::from_fn(|k| Thick::new(o[k], d[k], thickness));
+        let mut stack = Stack::new();
+        let mut index = 0;
+        loop {
+            observer.cell_visit();
+            match self.nodes[index] {
+                Node::Inner { axis, above, split } => {
+                    let axis = &axes[usize::from(axis)];
+                    let [reached, left] = axis.cross(split);
+                    let (below, above) = (index + 1, above as usize);
+                    let (near, far) = if axis.negative { (above, below) } else { (below, above) };
+                    index = if reached > inside.max {
+                        near
+                    } else if left < inside.min {
+                        far
+                    } else {
+                        let mut later = inside;
+                        if reached > later.min {
+                            later.min = reached;
+                        }
+                        stack.push(Pending { node: far as u32, inside: later });
+                        if left < inside.max {
+                            inside.max = left;
+                        }
+                        near
+                    };
+                    continue;
+                }
+                Node::Leaf { first, count } => {
+                    enter_leaf(index);
+                    for &primitive in &self.primitives[first as usize..][..count as usize] {
+                        observer.primitive_test(primitive);
+                        if probe.test(primitive) && done(&probe) {
+                            return probe.best();
+                        }
+                    }
+                }
+            }
+            // A hit may lie beyond the cell that it was found in: what comes before it still counts.
+            let best = probe.range().max;
+            let next = loop {
+                match stack.pop() {
+                    Some(pending) if pending.inside.min <= best => break pending,
+                    Some(_) => {}
+                    None => return probe.best(),
+                }
+            };
+            index = next.node as usize;
+            inside = Interval { min: next.inside.min, max: next.inside.max.min(best) };
+        }
+    }
+
+    /// The cells that are not divided, in the order of the tree.
+    pub fn leaves(&self) -> Vec<Leaf<'_>> {
+        let mut leaves = Vec::new();
+        let mut pending = vec![(0, self.bounds)];
+        while let Some((index, cell)) = pending.pop() {
+            match self.nodes[index] {
+                Node::Inner { axis, above, split } => {
+                    let [below_cell, above_cell] = halves(cell, usize::from(axis), split);
+                    pending.push((above as usize, above_cell));
+                    pending.push((index + 1, below_cell));
+                }
+                Node::Leaf { first, count } => leaves.push(Leaf {
+                    bounds: cell,
+                    primitives: &self.primitives[first as usize..][..count as usize],
+                }),
+            }
+        }
+        leaves
+    }
+
+    /// The cells that the search for the closest hit visits, in this order, as positions in
+    /// [`KdTree::leaves`].
+    pub fn visited_leaves(&self, ray: &Ray, range: Interval) -> Vec<usize> {
+        let mut visited = Vec::new();
+        self.walk_leaves(ray, range, &mut (), |_| false, |node| visited.push(node));
+        let is_leaf = |node: &&Node| matches!(node, Node::Leaf { .. });
+        visited.iter().map(|&node| self.nodes[..node].iter().filter(is_leaf).count()).collect()
+    }
+
+    /// Checks that the tree is one: every node reached once, no deeper than allowed, planes inside
+    /// their cells, and every primitive, once, in all cells that it comes into.
+    ///
+    /// # Errors
+    /// What is wrong, and where.
+    pub fn validate(&self) -> Result<(), String> {
+        let all: Vec<PrimitiveId> = self.scene.primitives().collect();
+        let (mut next_node, mut next_primitive) = (0, 0);
+        let mut pending = vec![(0, self.bounds, 0, all)];
+        while let Some((index, cell, depth, inside)) = pending.pop() {
+            if index != next_node {
+                return Err(format!("node {index} follows {next_node} nodes"));
+            }
+            next_node += 1;
+            if depth > self.max_depth {
+                return Err(format!("node {index} is {depth} deep, more than {}", self.max_depth));
+            }
+            match self.nodes[index] {
+                Node::Inner { axis, above, split } => {
+                    let axis = usize::from(axis);
+                    if !(cell.min[axis] < split && split < cell.max[axis]) {
+                        return Err(format!("node {index} is split outside its cell"));
+                    }
+                    let [below_half, above_half] = halves(cell, axis, split);
+                    let near = |half: Bounds3| {
+                        inside.iter().copied().filter(|&p| self.comes_near(p, half)).collect()
+                    };
+                    pending.push((above as usize, above_half, depth + 1, near(above_half)));
+                    pending.push((index + 1, below_half, depth + 1, near(below_half)));
+                }
+                Node::Leaf { first, count } => {
+                    if first != next_primitive {
+                        return Err(format!("leaf {index} does not follow the one before"));
+                    }
+                    next_primitive += count;
+                    let listed = &self.primitives[first as usize..][..count as usize];
+                    if listed.windows(2).any(|pair| pair[0] >= pair[1]) {
+                        return Err(format!("leaf {index} lists a primitive twice"));
+                    }
+                    if let Some(missing) = inside.iter().find(|p| !listed.contains(p)) {
+                        return Err(format!("{missing:?} is missing in leaf {index}, {cell:?}"));
+                    }
+                }
+            }
+        }
+        if next_node != self.nodes.len() || next_primitive as usize != self.primitives.len() {
+            return Err(format!("{next_node} of {} nodes are reached", self.nodes.len()));
+        }
+        Ok(())
+    }
+
+    /// Whether a point of the primitive is in the cell.
+    fn comes_near(&self, primitive: PrimitiveId, cell: Bounds3) -> bool {
+        let index = primitive.0 as usize;
+        if index < self.scene.mesh.triangles.len() {
+            !clipped(self.scene.mesh.corners(index), cell).is_empty()
+        } else {
+            let sphere = self.scene.spheres[index - self.scene.mesh.triangles.len()].shape;
+            let nearest = sphere.center.clamp(cell.min, cell.max);
+            sphere.center.distance(nearest) <= sphere.radius
+        }
+    }
+}
+
+impl Intersector for KdTree<'_> {
+    fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
+        self.walk(ray, range, &mut (), |_| false)
+    }
+
+    fn occluded(&self, ray: &Ray, range: Interval) -> bool {
+        self.walk(ray, range, &mut (), |_| true).is_some()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use lancer_core::generate::icosphere;
+    use lancer_core::intersector::{LinearScan, TestCounts};
+
+    use super::*;
+    use crate::spatial::hard;
+
+    /// Rays between random points, and some in axis planes.
+    fn rays(count: usize) -> impl Iterator<Item = Ray> {
+        let mut point = hard::points(41);
+        (0..count).map(move |k| {
+            let (origin, mut direction) = (1.5 * point(), point());
+            if k % 3 == 0 {
+                direction[k % 9 / 3] = 0.0;
+            }
+            Ray::new(origin, direction)
+        })
+    }
+
+    #[test]
+    fn trees_over_hard_scenes_are_valid() {
+        for (name, scene) in hard::scenes() {
+            let tree = KdTree::build(&scene);
+            tree.validate().unwrap_or_else(|error| panic!("{name}: {error}"));
+            let limit = REFERENCES_PER_PRIMITIVE * scene.primitives().len();
+            assert!(tree.primitives.len() <= limit, "{name}: {}", tree.primitives.len());
+        }
+    }
+
+    #[test]
+    fn scale_and_place_do_not_change_the_answer() {
+        for (name, scene) in hard::scenes() {
+            if scene.primitives().len() > 2000 {
+                continue;
+            }
+            let (tree, oracle) = (KdTree::build(&scene), LinearScan::new(&scene));
+            let bounds = scene.bounds();
+            let (center, size) = (bounds.center(), (bounds.max - bounds.min).max_element());
+            for ray in rays(500) {
+                let ray = Ray::new(center + size * ray.origin, ray.direction);
+                let wanted = oracle.closest_hit(&ray, Interval::POSITIVE);
+                assert_eq!(tree.closest_hit(&ray, Interval::POSITIVE), wanted, "{name}: {ray:?}");
+            }
+        }
+    }
+
+    /// (split − o) / d is 0 / 0 in the plane and comes out on the wrong side of rounding next to it.
+    #[test]
+    fn a_ray_in_the_plane_visits_both_sides() {
+        for direction in [0.0, -0.0] {
+            for (origin, sides) in [(1.0, "both"), (0.9, "near"), (1.1, "far")] {
+                let axis = Thick::new(origin, direction, 1e-13);
+                let [reached, left] = axis.cross(1.0);
+                let ahead = if axis.negative { "far" } else { "near" };
+                match sides {
+                    "both" => assert_eq!([reached, left], [f64::NEG_INFINITY, f64::INFINITY]),
+                    side if side == ahead => assert_eq!(reached, f64::INFINITY),
+                    _ => assert_eq!(left, f64::NEG_INFINITY),
+                }
+            }
+            // Without thickness: 0 / 0, before and after nothing, so both sides.
+            assert!(Thick::new(1.0, direction, 0.0).cross(1.0).iter().all(|t| t.is_nan()));
+        }
+        assert!(Thick::new(0.0, f64::MIN_POSITIVE / 4.0, 0.0).cross(1e-20)[0].is_nan());
+    }
+
+    /// The textbook's mistake: the first cell whose primitives are met ends the walk, though they
+    /// may be met in a later cell, behind others.
+    #[test]
+    fn the_first_hit_found_is_not_the_closest() {
+        let scene = hard::scene_of(hard::soup(300, 1.0));
+        let tree = KdTree::build(&scene);
+        let leaves = tree.leaves();
+        let mut wrong = 0;
+        for ray in rays(5000) {
+            let wanted = tree.closest_hit(&ray, Interval::POSITIVE);
+            let in_leaf = |&leaf: &usize| {
+                let mut probe = Probe::new(&scene, &ray, Interval::POSITIVE);
+                leaves[leaf].primitives.iter().for_each(|&primitive| {
+                    probe.test(primitive);
+                });
+                probe.best()
+            };
+            let naive = tree.visited_leaves(&ray, Interval::POSITIVE).iter().find_map(in_leaf);
+            wrong += usize::from(naive != wanted);
+        }
+        assert!(wrong > 50, "{wrong}");
+    }
+
+    #[test]
+    fn leaves_fill_the_box_and_are_visited_in_order() {
+        let scene = hard::scene_of(icosphere(4));
+        let tree = KdTree::build(&scene);
+        let leaves = tree.leaves();
+        let volume = |b: Bounds3| (b.max - b.min).element_product();
+        let sum: f64 = leaves.iter().map(|leaf| volume(leaf.bounds)).sum();
+        assert!((sum / volume(tree.bounds) - 1.0).abs() < 1e-9, "{sum}");
+        for ray in rays(200) {
+            let visited = tree.visited_leaves(&ray, Interval::POSITIVE);
+            let enter = |&leaf: &usize| {
+                let Bounds3 { min, max } = grown(leaves[leaf].bounds, 1e-12);
+                Slabs::new(&ray).enter(min, max, Interval::POSITIVE).expect("visited: met")
+            };
+            let entered: Vec<f64> = visited.iter().map(enter).collect();
+            assert!(entered.windows(2).all(|pair| pair[0] <= pair[1] + 1e-9), "{entered:?}");
+            let unique: std::collections::HashSet<_> = visited.iter().collect();
+            assert_eq!(unique.len(), visited.len(), "no cell twice");
+        }
+    }
+
+    #[test]
+    fn clipping_spares_tests() {
+        let scene = hard::scene_of(hard::soup(2000, 0.5));
+        let boxes = KdBuilder { perfect_splits: false, ..KdBuilder::default() };
+        let [clipped, boxed] = [KdTree::build(&scene), boxes.build(&scene)].map(|tree| {
+            tree.validate().unwrap();
+            let mut counts = TestCounts::default();
+            for ray in rays(1000) {
+                tree.walk(&ray, Interval::POSITIVE, &mut counts, |_| false);
+            }
+            counts.primitives
+        });
+        assert!(10 * clipped < 9 * boxed, "{clipped} {boxed}");
+    }
+
+    #[test]
+    fn any_number_of_threads_builds_the_same_tree() {
+        let scene = hard::scene_of(icosphere(5));
+        let [one, three] = [1, 3].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| KdTree::build(&scene))
+        });
+        assert_eq!(one.leaves(), three.leaves());
+    }
+}
