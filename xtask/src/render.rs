@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use glam::{DVec2, DVec3};
-use lancer_accel::ObvhsBvh2;
+use lancer_accel::{BspTree, Bvh, Grid, KdTree, ObvhsBvh2, ObvhsCwbvh, Octree};
 use lancer_core::Rgb;
 use lancer_core::image::{ImageSize, check_target, save};
 use lancer_core::intersector::{Intersector, LinearScan};
@@ -25,14 +25,27 @@ enum Method {
     Whitted,
 }
 
-#[derive(Clone, Copy)]
-enum Index {
-    Linear,
-    ObvhsBvh2,
+/// An index of a scene, and the bytes it holds.
+type Built<'s> = (Box<dyn Intersector + 's>, usize);
+
+type Build = for<'s> fn(&'s Scene) -> Built<'s>;
+
+fn built<'s, I: Intersector + 's>(index: I, memory: fn(&I) -> usize) -> Built<'s> {
+    let bytes = memory(&index);
+    (Box::new(index), bytes)
 }
 
 const METHODS: [(&str, Method); 2] = [("appel", Method::Appel), ("whitted", Method::Whitted)];
-const INDEXES: [(&str, Index); 2] = [("linear", Index::Linear), ("obvhs-bvh2", Index::ObvhsBvh2)];
+const INDEXES: [(&str, Build); 8] = [
+    ("linear", |scene| built(LinearScan::new(scene), |_| 0)),
+    ("bvh", |scene| built(Bvh::build(scene), Bvh::memory)),
+    ("obvhs-bvh2", |scene| built(ObvhsBvh2::build(scene), ObvhsBvh2::memory)),
+    ("obvhs-cwbvh", |scene| built(ObvhsCwbvh::build(scene), ObvhsCwbvh::memory)),
+    ("grid", |scene| built(Grid::build(scene), Grid::memory)),
+    ("octree", |scene| built(Octree::build(scene), Octree::memory)),
+    ("kd", |scene| built(KdTree::build(scene), KdTree::memory)),
+    ("bsp", |scene| built(BspTree::build(scene), BspTree::memory)),
+];
 
 /// Renders a scene by any method of the course.
 ///
@@ -51,8 +64,9 @@ pub struct Args {
     /// appel (visibility and shadows) or whitted (mirrors and glass as well)
     #[arg(long, default_value = "whitted")]
     method: String,
-    /// linear (every primitive for every ray) or obvhs-bvh2
-    #[arg(long, default_value = "obvhs-bvh2")]
+    /// linear (every primitive for every ray), bvh, obvhs-bvh2, obvhs-cwbvh, grid, octree, kd or bsp: the
+    /// same picture in another time
+    #[arg(long, default_value = "bvh")]
     index: String,
     /// Pixels across and down
     #[arg(long, default_value = "512x512", value_name = "WxH", allow_hyphen_values = true)]
@@ -122,7 +136,7 @@ fn part(text: &str) -> Result<f64, String> {
 
 pub fn run(args: &Args) -> Result<()> {
     let method = named("method", &args.method, &METHODS)?;
-    let index = named("index", &args.index, &INDEXES)?;
+    let build = named("index", &args.index, &INDEXES)?;
     check_target(&args.out).context("--out")?;
     progress::watch_for_interrupt()?;
 
@@ -150,15 +164,12 @@ pub fn run(args: &Args) -> Result<()> {
         .num_threads(args.threads.into())
         .build()
         .context("cannot start the threads")?;
-    let rendering = pool.install(|| match index {
-        Index::Linear => trace(method, &scene, &LinearScan::new(&scene), args),
-        Index::ObvhsBvh2 => {
-            let start = Instant::now();
-            let tree = ObvhsBvh2::build(&scene);
-            let mib = tree.memory() as f64 / f64::from(1 << 20);
-            say!("index   {:7.3} s   {}, {mib:.1} MiB", start.elapsed().as_secs_f64(), args.index);
-            trace(method, &scene, &tree, args)
-        }
+    let rendering = pool.install(|| {
+        let start = Instant::now();
+        let (index, bytes) = build(&scene);
+        let mib = bytes as f64 / f64::from(1 << 20);
+        say!("index   {:7.3} s   {}, {mib:.1} MiB", start.elapsed().as_secs_f64(), args.index);
+        trace(method, &scene, &*index, args)
     })?;
 
     let defects = rendering.image.defects();

@@ -155,7 +155,7 @@ fn wrong_options_are_refused_with_a_cure() {
     error: invalid value 'inf' for '--exposure <EV>': `inf` is not a number; write one such as -1.5
     error: invalid value 'bright' for '--exposure <EV>': `bright` is not a number; write one such as -1.5
     error: unknown method `witted`; known: whitted, appel
-    error: unknown index `linaer`; known: linear, obvhs-bvh2
+    error: unknown index `linaer`; known: linear, octree, bvh, grid, kd, bsp, obvhs-bvh2, obvhs-cwbvh
     ");
 }
 
@@ -509,7 +509,9 @@ fn threads_and_indexes_do_not_change_a_byte() {
     };
     let expected = bytes("--threads=1");
     assert_eq!(bytes("--threads=3"), expected);
-    assert_eq!(bytes("--index=linear"), expected);
+    for index in ["linear", "bvh", "obvhs-bvh2", "obvhs-cwbvh", "grid", "octree", "kd", "bsp"] {
+        assert_eq!(bytes(&format!("--index={index}")), expected, "{index}");
+    }
     assert_ne!(bytes("--seed=1"), expected);
     assert_ne!(bytes("--method=appel"), expected);
 }

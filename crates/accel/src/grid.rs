@@ -360,13 +360,13 @@ fn cells_between([low, high]: [IVec3; 2]) -> impl Iterator<Item = IVec3> {
 /// The three-dimensional digital differential analyser: the cells of a lattice along a ray.
 ///
 /// ```text
-/// algo:3d-dda         t_k = (plane(i_k) − o_k) / d_k      for the plane ahead on each axis k
+/// 3D-DDA               t_k = (plane(i_k) − o_k) / d_k      for the plane ahead on each axis k
 ///                     step along the axis of the smallest t_k
 /// ```
 ///
 /// The original adds a constant to t_k at each step, and its rounding adds up: in `f32` it skips cells.
 /// Here each t_k is computed anew.
-#[doc(alias = "algo:3d-dda")]
+#[doc(alias = "3D-DDA")]
 struct Dda {
     /// The parameter at which the ray enters the next cell to be returned.
     enter: f64,

@@ -1,3 +1,5 @@
+//! « Hiérarchie de volumes englobants »: the binary tree of our own.
+
 mod grow;
 
 use glam::Vec3A;
