@@ -218,6 +218,16 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
             },
         },
         Mutant {
+            says: "the weights are at other corners: U, the edge function of b and c, is a's, V is b's and W c's",
+            caught_by: "straight down, by hand",
+            mistake: |subject| {
+                subject.ray_triangle = |corners, ray| {
+                    let (t, weights) = ray_triangle(corners, ray)?;
+                    Some((t, weights.zxy()))
+                };
+            },
+        },
+        Mutant {
             says: "t is not divided by det = U + V + W",
             caught_by: "straight down, by hand",
             mistake: |subject| {
