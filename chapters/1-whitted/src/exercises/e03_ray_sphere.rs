@@ -364,9 +364,10 @@ fn tiny(subject: &Subject) -> Result<(), Mismatch> {
 
 /// Points of a sphere as they are rounded, and a direction for each: outwards, and back across the sphere.
 fn on_sphere(subject: &Subject) -> Result<(), Mismatch> {
-    let sphere = Sphere { center: DVec3::new(0.3, -1.7, 2.9), radius: 0.7 };
     let mut random = Uniform::new(3, 0, 0);
-    for _ in 0..1000 {
+    // The noise grows as the sphere does, whose size is a power of 2, so that nothing else changes.
+    for size in [1.0, 4096.0, 1.0 / 4096.0].into_iter().cycle().take(1500) {
+        let sphere = Sphere { center: size * DVec3::new(0.3, -1.7, 2.9), radius: size * 0.7 };
         let (n, direction) = (random.direction(), random.direction());
         let ray = Ray::new(sphere.center + sphere.radius * n, direction);
         let cosine = n.dot(direction);
@@ -374,8 +375,8 @@ fn on_sphere(subject: &Subject) -> Result<(), Mismatch> {
         if cosine.abs() < 1e-3 {
             continue;
         }
-        let wanted = (cosine < 0.0).then_some(-2.0 * sphere.radius * cosine);
-        let got = (subject.ray_sphere)(&sphere, &ray);
+        let wanted = (cosine < 0.0).then_some(-1.4 * cosine);
+        let got = (subject.ray_sphere)(&sphere, &ray).map(|t| t / size);
         if got.distance(&wanted) > 1e-11 {
             let (got, wanted) = match wanted {
                 None => ("some meet the sphere, where they start or behind it", "None for each"),
