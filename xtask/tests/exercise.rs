@@ -259,7 +259,7 @@ fn a_student_goes_wrong_in_many_ways_and_then_right() {
     assert!(student.accepted(&["list"]).contains("does not compile"));
 
     let signature =
-        "It begins with:\n\n    pub fn reflected_ray(incident: DVec3, n: DVec3) -> DVec3\n";
+        "It should begin with:\n\n    pub fn reflected_ray(incident: DVec3, n: DVec3) -> DVec3\n";
     for (from, to, says) in [
         ("pub fn reflected_ray", "pub fn mirror", "has no function `reflected_ray`"),
         ("pub fn", "fn", "is private to that file"),
@@ -281,6 +281,13 @@ fn a_student_goes_wrong_in_many_ways_and_then_right() {
     let said = student.failed(&["check"]);
     assert!(said.contains("your function panicked in line 12 of e06_reflected_ray.rs: "), "{said}");
 
+    student.answer("std::process::exit(incident.length() as i32 - 1)");
+    let said = student.failed(&["check"]);
+    assert!(
+        said.ends_with("Your program ended before its checks did: does it call `exit`?\n"),
+        "{said}"
+    );
+
     student.answer("incident - 2.0 * n.dot(incident) * n");
     let said = student.accepted(&["check"]);
     let (report, next) = said.trim_end().rsplit_once('\n').unwrap();
@@ -296,6 +303,9 @@ fn a_student_goes_wrong_in_many_ways_and_then_right() {
     The course's own answer: cargo xtask exercise solution reflected-ray
     ");
     assert!(student.accepted(&["list"]).contains("passing"));
+    student.accepted(&["start", "7"]);
+    let said = student.failed(&["check"]);
+    assert!(said.starts_with("Right: E1.6\nE1.7 refracted-ray: "), "{said}");
     let shown = student.accepted(&["show", "6"]);
     assert!(
         shown

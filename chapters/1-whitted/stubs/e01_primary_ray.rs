@@ -8,7 +8,8 @@ use chapter_1::exercises::prelude::*;
 /// - `camera.up`: points upwards in the picture. It may have any length, and need not be perpendicular to
 ///   the view axis.
 /// - `camera.fov`: the *vertical* opening angle in degrees, from the lower edge to the upper.
-/// - `size.width`, `size.height`: of the picture in pixels, which are square.
+/// - `size.width`, `size.height`: of the picture in pixels, which are square. They are `u32`;
+///   `f64::from(size.width)` is a number to calculate with.
 /// - `x` to the right and `y` *downwards*, in pixels: (0, 0) is the picture's upper left corner, and
 ///   (0.5, 0.5) the centre of its first pixel. Add nothing to them.
 ///

@@ -1,4 +1,4 @@
-//! E1.2 Where a ray meets a triangle. Slide « Algorithme : calcul des intersections ».
+//! E1.2 Where a ray meets a triangle. Slide « Algorithme : calcul et tri des intersections ».
 
 use chapter_1::exercises::prelude::*;
 

@@ -1,4 +1,4 @@
-//! E1.3 Where a ray meets a sphere. Slide « Algorithme : calcul des intersections ».
+//! E1.3 Where a ray meets a sphere. Slide « Algorithme : calcul et tri des intersections ».
 
 use chapter_1::exercises::prelude::*;
 

@@ -1,4 +1,4 @@
-//! E1.5 One lamp's part of the local model. Slide « Modèle local ».
+//! E1.5 One lamp's part of the local model. Slide « Modèle d'éclairage, modèle local ».
 
 use chapter_1::exercises::prelude::*;
 

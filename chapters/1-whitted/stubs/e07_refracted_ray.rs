@@ -1,4 +1,4 @@
-//! E1.7 The refracted ray. Slide « Calcul du rayon réfracté : loi de Descartes ».
+//! E1.7 The refracted ray. Slide « Reflets spéculaires : calcul du rayon réfracté ».
 
 use chapter_1::exercises::prelude::*;
 

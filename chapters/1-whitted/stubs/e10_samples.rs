@@ -1,4 +1,4 @@
-//! E1.10 Samples and their error. Slide « Aliassage et disparition de petits objets ».
+//! E1.10 Samples and their error. Slide « Critiques du lancer de rayons : aliassage et disparition de petits objets ».
 
 use chapter_1::exercises::prelude::*;
 

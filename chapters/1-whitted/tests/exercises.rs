@@ -1,6 +1,7 @@
 //! The exercises of the chapter prove themselves: the right answer passes every check, an untouched stub
 //! passes none, every known slip is caught by the check that names it and looks like no other.
 
+use chapter_1::exercises::prelude::{DVec3, Meeting, Ray};
 use chapter_1::exercises::{COURSE, Subject};
 use lancer_exercise::{Solution, Verified, passed_by_stub};
 
@@ -64,6 +65,48 @@ fn an_untouched_stub_passes_no_check() {
     for exercise in COURSE.exercises {
         assert_eq!(passed_by_stub(exercise, STUB), [""; 0], "{}", exercise.card.name);
     }
+}
+
+#[test]
+fn a_stub_names_its_cards_slide() {
+    for exercise in COURSE.exercises {
+        let card = exercise.card;
+        let first = card.stub.lines().next().unwrap();
+        let wanted = (format!("//! {} ", card.id), format!(" Slide « {} ».", card.slide));
+        assert!(first.starts_with(&wanted.0) && first.ends_with(&wanted.1), "{first}");
+    }
+}
+
+/// The third hint's triangle test takes every t > 0, whose noise the course's own cuts off.
+#[test]
+fn the_hinted_triangle_test_draws_the_title_picture_without_acne() {
+    let subject = Subject { ray_triangle: hinted_triangle, ..COURSE.reference };
+    for exercise in COURSE.exercises.iter().filter(|exercise| exercise.card.id != "E1.2") {
+        let (yours, reference) = ((exercise.draw)(&subject), (exercise.draw)(&COURSE.reference));
+        let pairs = yours.pixels().iter().zip(reference.pixels());
+        let wrong = pairs.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| (a - b).abs() > 1e-4));
+        assert_eq!(wrong.count(), 0, "{}", exercise.card.id);
+    }
+}
+
+fn hinted_triangle(corners: [DVec3; 3], ray: &Ray) -> Option<Meeting> {
+    let (d, z) = (ray.direction, ray.direction.abs().max_position());
+    let (x, y) = ((z + 1) % 3, (z + 2) % 3);
+    let inverse = 1.0 / d[z];
+    let [a, b, c] = corners.map(|corner| {
+        let v = corner - ray.origin;
+        DVec3::new(v[x] - d[x] * inverse * v[z], v[y] - d[y] * inverse * v[z], v[z] * inverse)
+    });
+    let edge = |p: DVec3, q: DVec3| q.x * p.y - q.y * p.x;
+    let (u, v, w) = (edge(b, c), edge(c, a), edge(a, b));
+    let miss = u.min(v).min(w) < 0.0 && u.max(v).max(w) > 0.0;
+    let beside = |a: f64, b: f64, c: f64| a.min(b).min(c) > 0.0 || a.max(b).max(c) < 0.0;
+    if miss || beside(a.x, b.x, c.x) || beside(a.y, b.y, c.y) {
+        return None;
+    }
+    let det = u + v + w;
+    let t = (u * a.z + v * b.z + w * c.z) / det;
+    (t > 0.0 && t.is_finite()).then(|| (t, DVec3::new(u, v, w) / det))
 }
 
 #[test]

@@ -149,7 +149,7 @@ fn describe(text: &mut String, file: &str, failure: &Failure) {
             line(text, format_args!("      your function panicked{place}: {message}"));
         }
         Failure::Endless => {
-            let endless = "your function did not come back within 10 seconds: does its loop end?";
+            let endless = "your function did not come back within 10 seconds: does its loop end, or its recursion?";
             line(text, format_args!("      {endless}"));
         }
     }

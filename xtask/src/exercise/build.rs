@@ -132,7 +132,7 @@ fn missing_function(errors: &[&Value], entry: &Entry, sources: &Path) -> Option<
             _ => format!("`{function}` in {file} takes or returns other types than it should"),
         };
         let message = format!(
-            "{}: {problem}\nIt begins with:\n\n    {}",
+            "{}: {problem}\nIt should begin with:\n\n    {}",
             entry.title(),
             entry.signature(function)
         );
@@ -176,13 +176,20 @@ pub fn ask(program: &Path, arguments: &[&str]) -> Result<Answer> {
     command.args(arguments).stdin(Stdio::null());
     let ended = run(&mut command, Some(LIMIT), KEPT).context("cannot start your program")?;
     let trouble = match ended.status {
-        None => Some("Your program was stopped after 90 seconds: does every loop end?".to_owned()),
+        None => Some(
+            "Your program was stopped after 90 seconds: does every loop end, and every recursion?"
+                .to_owned(),
+        ),
         Some(status) => match status.code() {
+            // The program's own last words come with every answer.
+            Some(0 | 1) if ended.out.is_empty() => {
+                Some("Your program ended before its checks did: does it call `exit`?".to_owned())
+            }
             Some(0 | 1) => None,
             _ => Some(death(&ended.err, status)),
         },
     };
-    let is_right = ended.status.is_some_and(|status| status.success());
+    let is_right = trouble.is_none() && ended.status.is_some_and(|status| status.success());
     let is_crash = trouble.is_some();
     let text = match trouble {
         Some(trouble) => format!("{}{trouble}\n", ended.out),
@@ -347,7 +354,7 @@ mod tests {
         ] {
             let broken = explained(&[error(code, "chapter-1/src/main.rs", line)]);
             assert_eq!(broken[0].exercise, Some("second"));
-            let end = format!("{says}\nIt begins with:\n\n    pub fn g(x: f64) -> f64");
+            let end = format!("{says}\nIt should begin with:\n\n    pub fn g(x: f64) -> f64");
             assert!(broken[0].message.ends_with(&end), "{}", broken[0].message);
         }
     }

@@ -141,12 +141,14 @@ fn chosen(choice: &Choice, student: &mut Student) -> Result<Option<Entry>> {
 fn list() -> Result<()> {
     let mut student = Student::open()?;
     let next = student.first_not_passing()?.map(|entry| entry.card.id);
-    for entry in entries() {
-        let state = student.state(&entry)?;
+    let entries = entries();
+    let longest = entries.iter().map(|entry| entry.card.title.chars().count()).max().unwrap_or(0);
+    for entry in &entries {
+        let state = student.state(entry)?;
         let card = entry.card;
         let mark = if next == Some(card.id) { "→" } else { " " };
         say!(
-            "{mark} {:<6} {:<16} {:<32} {:>3} min  {}",
+            "{mark} {:<6} {:<16} {:<longest$} {:>3} min  {}",
             card.id,
             card.name,
             card.title,

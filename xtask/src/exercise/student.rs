@@ -139,11 +139,17 @@ impl Student {
         }
         let started = self.workspace.started();
         let mut last_edited = None;
+        let mut passing = Vec::new();
         for entry in &started {
-            let checked = self.check_one(entry, all)?;
+            let mut checked = self.check_one(entry, all)?;
             if !checked.passes {
+                // Whoever has just mended one waits for a word about it, not about the next.
+                if !passing.is_empty() {
+                    checked.text.insert_str(0, &format!("Right: {}\n", passing.join(", ")));
+                }
                 return Ok(checked);
             }
+            passing.push(entry.card.id);
             let edited = self.workspace.edited(entry);
             if last_edited.as_ref().is_none_or(|(latest, _)| *latest <= edited) {
                 last_edited = Some((edited, checked));

@@ -51,6 +51,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "the middle of the right edge", run: right_edge },
         Check { name: "another opening angle", run: opening_angle },
         Check { name: "a turned camera, by hand", run: turned },
+        Check { name: "odd numbers of pixels", run: odd },
     ],
     mutants: &[
         Mutant {
@@ -205,6 +206,26 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
             },
         },
         Mutant {
+            says: "half the size is a whole number: `size.width / 2` drops the half of an odd one, so divide after \
+                   `f64::from`",
+            caught_by: "odd numbers of pixels",
+            mistake: |subject| {
+                subject.primary_ray = |camera, size, x, y| {
+                    let rounded = |pixels: u32| 0.5 * f64::from(pixels % 2);
+                    primary_ray(camera, size, x + rounded(size.width), y + rounded(size.height))
+                };
+            },
+        },
+        Mutant {
+            says: "the ray starts in look_at: it starts in the eye",
+            caught_by: "the middle of the picture",
+            mistake: |subject| {
+                subject.primary_ray = |camera, size, x, y| {
+                    Ray::new(camera.look_at, primary_ray(camera, size, x, y).direction)
+                };
+            },
+        },
+        Mutant {
             says: "the ray looks backwards: from the eye to the film is look_at − eye, not eye − look_at",
             caught_by: "the middle of the picture",
             mistake: |subject| {
@@ -312,6 +333,11 @@ fn opening_angle(subject: &Subject) -> Result<(), Mismatch> {
 fn turned(subject: &Subject) -> Result<(), Mismatch> {
     let direction = DVec3::new(-15.0, 9.0, 25.0) / 931.0_f64.sqrt();
     compare(subject, &TURNED, (8, 6), (7.0, 2.0), direction)
+}
+
+/// The middle of 5 × 3 pixels is (2.5, 1.5), in the middle of one.
+fn odd(subject: &Subject) -> Result<(), Mismatch> {
+    compare(subject, &PLAIN, (5, 3), (2.5, 1.5), DVec3::NEG_Z)
 }
 
 /// A floor and two balls before a sky, by the subject's rays. The sky is lighter the higher it is.

@@ -218,6 +218,16 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
             },
         },
         Mutant {
+            says: "the weights are at other corners: U, the edge function of b and c, is a's, V is b's and W c's",
+            caught_by: "straight down, by hand",
+            mistake: |subject| {
+                subject.ray_triangle = |corners, ray| {
+                    let (t, weights) = ray_triangle(corners, ray)?;
+                    Some((t, weights.zxy()))
+                };
+            },
+        },
+        Mutant {
             says: "t is not divided by det = U + V + W",
             caught_by: "straight down, by hand",
             mistake: |subject| {
@@ -331,7 +341,14 @@ fn other_side(subject: &Subject) -> Result<(), Mismatch> {
 fn beside(subject: &Subject) -> Result<(), Mismatch> {
     // Beyond each edge, and beyond each corner.
     let points = [(4.0, -1.0), (-1.0, 4.0), (5.0, 4.0), (-1.0, -1.0), (10.0, -1.0), (-1.0, 10.0)];
-    points.into_iter().try_for_each(|(x, y)| misses(subject, "beside", FLAT, &down(x, y)))
+    // In the range of the corners' x and y is what lies beyond the longest edge, which is each one's in turn.
+    let [a, b, c] = FLAT;
+    for corners in [FLAT, [b, c, a], [c, a, b], [a, c, b], [c, b, a], [b, a, c]] {
+        for (x, y) in points {
+            misses(subject, "beside", corners, &down(x, y))?;
+        }
+    }
+    Ok(())
 }
 
 fn behind(subject: &Subject) -> Result<(), Mismatch> {
@@ -349,8 +366,11 @@ fn exact_borders(subject: &Subject) -> Result<(), Mismatch> {
         ((8.0, 0.0), DVec3::Y),
         ((0.0, 8.0), DVec3::Z),
     ];
+    let [a, b, c] = FLAT;
     points.into_iter().try_for_each(|((x, y), weights)| {
-        meets(subject, "on its border: ", FLAT, &down(x, y), (3.0, weights))
+        meets(subject, "on its border: ", FLAT, &down(x, y), (3.0, weights))?;
+        let what = "on its border, the corners in the other order of rotation: ";
+        meets(subject, what, [a, c, b], &down(x, y), (3.0, weights.xzy()))
     })
 }
 

@@ -54,6 +54,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "just touching", run: tangent },
         Check { name: "far away", run: far },
         Check { name: "a huge sphere close by", run: huge },
+        Check { name: "a tiny sphere close by", run: tiny },
         Check { name: "starting on the sphere", run: on_sphere },
     ],
     mutants: &[
@@ -83,6 +84,25 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                     let hit = ray_sphere(sphere, ray);
                     hit.filter(|_| roots(sphere, ray).is_some_and(|[near, _]| near > 0.0))
                 };
+            },
+        },
+        Mutant {
+            says: "only the nearer root is tried: from inside the sphere that one is behind, and the farther \
+                   one is the hit. Besides, the discriminant is the textbook's, a difference of two huge numbers \
+                   when the sphere is far away",
+            caught_by: "from inside",
+            mistake: |subject| {
+                subject.ray_sphere =
+                    |sphere, ray| textbook_sphere(*sphere, ray).filter(|near| *near > 0.0);
+            },
+        },
+        Mutant {
+            says: "a fixed epsilon: what is nearer than that is lost, and in a tiny scene that is everything; \
+                   0 is the limit, and the noise of F·F − r² is what to cut",
+            caught_by: "a tiny sphere close by",
+            mistake: |subject| {
+                subject.ray_sphere =
+                    |sphere, ray| roots(sphere, ray)?.into_iter().find(|t| *t > 1e-6);
             },
         },
         Mutant {
@@ -272,7 +292,11 @@ fn inside(subject: &Subject) -> Result<(), Mismatch> {
     let (sphere, ray) = aside(1.0);
     compare(subject, "from inside, towards the far wall", sphere, ray, Some(5.0))?;
     let (sphere, ray) = aside(-1.0);
-    compare(subject, "from inside, towards the near wall", sphere, ray, Some(3.0))
+    compare(subject, "from inside, towards the near wall", sphere, ray, Some(3.0))?;
+    let (sphere, ray) = aside(0.0);
+    compare(subject, "from inside, F·D = 0", sphere, ray, Some(4.0))?;
+    let ray = Ray::new(sphere.center, ray.direction);
+    compare(subject, "from the centre, F = 0", sphere, ray, Some(5.0))
 }
 
 fn behind(subject: &Subject) -> Result<(), Mismatch> {
@@ -325,11 +349,25 @@ fn huge(subject: &Subject) -> Result<(), Mismatch> {
     precise(subject, "rays that start 3 to 150 above a sphere of radius 7340032", cases)
 }
 
+/// The whole of [`aside`] 2⁻³⁰ times as large, but for the direction.
+fn tiny(subject: &Subject) -> Result<(), Mismatch> {
+    let (sphere, ray) = aside(10.0);
+    let size = 0.5_f64.powi(30);
+    let sphere = Sphere { center: size * sphere.center, radius: size * sphere.radius };
+    let got = (subject.ray_sphere)(&sphere, &ray).map(|t| t / size);
+    let case = || {
+        let (center, radius) = (sphere.center.shown(), sphere.radius.shown());
+        format!("t · 2³⁰: sphere around {center} of radius {radius}; ray: {}", ray.shown())
+    };
+    within(1e-12, case, &got, &Some(6.0))
+}
+
 /// Points of a sphere as they are rounded, and a direction for each: outwards, and back across the sphere.
 fn on_sphere(subject: &Subject) -> Result<(), Mismatch> {
-    let sphere = Sphere { center: DVec3::new(0.3, -1.7, 2.9), radius: 0.7 };
     let mut random = Uniform::new(3, 0, 0);
-    for _ in 0..1000 {
+    // The noise grows as the sphere does, whose size is a power of 2, so that nothing else changes.
+    for size in [1.0, 4096.0, 1.0 / 4096.0].into_iter().cycle().take(1500) {
+        let sphere = Sphere { center: size * DVec3::new(0.3, -1.7, 2.9), radius: size * 0.7 };
         let (n, direction) = (random.direction(), random.direction());
         let ray = Ray::new(sphere.center + sphere.radius * n, direction);
         let cosine = n.dot(direction);
@@ -337,8 +375,8 @@ fn on_sphere(subject: &Subject) -> Result<(), Mismatch> {
         if cosine.abs() < 1e-3 {
             continue;
         }
-        let wanted = (cosine < 0.0).then_some(-2.0 * sphere.radius * cosine);
-        let got = (subject.ray_sphere)(&sphere, &ray);
+        let wanted = (cosine < 0.0).then_some(-1.4 * cosine);
+        let got = (subject.ray_sphere)(&sphere, &ray).map(|t| t / size);
         if got.distance(&wanted) > 1e-11 {
             let (got, wanted) = match wanted {
                 None => ("some meet the sphere, where they start or behind it", "None for each"),

@@ -287,11 +287,15 @@ fn smooth() -> SurfacePoint {
 
 fn lifted(subject: &Subject) -> Result<(), Mismatch> {
     let surface = smooth();
-    compare(subject, &surface, DVec3::new(3.0, 2.0, 9.0), surface.lifted + REACH * SLANTED)
+    let lamps = [DVec3::new(3.0, 2.0, 9.0), DVec3::new(7.0, 5.0, 5.0)];
+    let origin = surface.lifted + REACH * SLANTED;
+    lamps.into_iter().try_for_each(|lamp| compare(subject, &surface, lamp, origin))
 }
 
 fn from_inside(subject: &Subject) -> Result<(), Mismatch> {
-    compare(subject, &smooth(), DVec3::new(-3.0, 2.0, -5.0), POINT - REACH * SLANTED)
+    let lamps = [DVec3::new(-3.0, 2.0, -5.0), DVec3::new(-2.5, 0.5, 3.0)];
+    let origin = POINT - REACH * SLANTED;
+    lamps.into_iter().try_for_each(|lamp| compare(subject, &smooth(), lamp, origin))
 }
 
 /// How many of its sizes the scene of plate 0.2 stands away from the origin here.

@@ -53,6 +53,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "a plate that glows on one side", run: emission },
         Check { name: "a mirror shows the plate", run: mirror },
         Check { name: "two mirrors face each other", run: facing_mirrors },
+        Check { name: "through a pane", run: pane },
         Check { name: "a ball of index 1 is not there", run: no_ball },
         Check { name: "into a glass ball and out of it", run: glass_ball },
         Check { name: "total reflection", run: total_reflection },
@@ -317,6 +318,19 @@ fn emission(subject: &Subject) -> Result<(), Mismatch> {
         compare(subject, &text, &words, ray, 5, wanted)?;
     }
     Ok(())
+}
+
+/// One surface to go through, unlike a ball's two, where two wrong signs make a right one.
+fn pane(subject: &Subject) -> Result<(), Mismatch> {
+    let text = format!(
+        "material.pane = {{ k_t = [0.5, 0.25, 1] }}
+        polygon = [{PLATE_AT_3},
+            {{ vertices = [[1, 3, -1], [1, 3, 1], [1, 5, 1], [1, 5, -1]], material = 'pane' }}]
+        {PLATE}"
+    );
+    let words = "a pane x = 1, refractive index 1, k_t = (0.5, 0.25, 1), before a plate x = 3, ε = (2, 4, 0.5)";
+    let ray = Ray::new(DVec3::new(0.0, 4.0, 0.0), DVec3::X);
+    compare(subject, &text, words, ray, 5, Rgb::new(1.0, 1.0, 0.5))
 }
 
 fn mirror(subject: &Subject) -> Result<(), Mismatch> {

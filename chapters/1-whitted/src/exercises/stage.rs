@@ -1,5 +1,6 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use glam::DVec3;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::illumination::Reflectance;
 use lancer_core::intersector::{Hit, Intersector};
@@ -70,16 +71,30 @@ impl<'a> Stage<'a> {
         self.scene.primitives().filter_map(move |primitive| {
             let index = primitive.0 as usize;
             let (t, barycentric) = match index.checked_sub(triangles) {
-                None => (self.subject.ray_triangle)(self.scene.mesh.corners(index), ray)?,
+                None => {
+                    let corners = self.scene.mesh.corners(index);
+                    let hit = (self.subject.ray_triangle)(corners, ray)?;
+                    (!starts_on(corners, ray, hit.0)).then_some(hit)?
+                }
                 Some(index) => {
                     let sphere = &self.scene.spheres[index].shape;
-                    ((self.subject.ray_sphere)(sphere, ray)?, glam::DVec3::ZERO)
+                    ((self.subject.ray_sphere)(sphere, ray)?, DVec3::ZERO)
                 }
             };
             let counts = t > range.min && t < range.max;
             counts.then_some(Hit { t, primitive, barycentric })
         })
     }
+}
+
+/// Whether a ray leaves a triangle's plane from it, up to rounding: a t > 0 is noise then. The course's own test
+/// knows a bound for each t, which no student is asked for; without any there is acne.
+fn starts_on(corners: [DVec3; 3], ray: &Ray, t: f64) -> bool {
+    let [a, b, c] = corners;
+    let n = (b - a).cross(c - a).normalize_or_zero();
+    let reach = corners.map(|corner| (corner - ray.origin).abs().max_element());
+    let height = t * n.dot(ray.direction).abs();
+    height <= 64.0 * f64::EPSILON * reach.into_iter().fold(0.0, f64::max)
 }
 
 impl Intersector for Stage<'_> {
