@@ -180,6 +180,8 @@ struct RowLayout<'a> {
     tiles: &'a [Tile],
     titles: Vec<Paragraph>,
     subtitles: Vec<Paragraph>,
+    /// The height of the colour bars, if any tile has one: titles stand level.
+    bar: f64,
     title_height: f64,
     pictures_height: f64,
     main_height: f64,
@@ -206,6 +208,7 @@ impl<'a> RowLayout<'a> {
             tiles,
             titles,
             subtitles,
+            bar,
             title_height,
             pictures_height,
             main_height,
@@ -220,12 +223,12 @@ impl<'a> RowLayout<'a> {
     fn draw(&self, montage: &Montage, canvas: &mut Canvas, rect: Rect, column: f64) {
         let (mut x, top) = (rect.x, rect.y + self.title_height);
         for ((tile, title), subtitle) in self.tiles.iter().zip(&self.titles).zip(&self.subtitles) {
-            let bar = if tile.color.is_some() { COLOR_BAR } else { 0.0 };
             // Titles stand on their pictures, whatever their number of lines.
-            title.draw(canvas, [x, top - bar - 8.0 - title.height()]);
+            title.draw(canvas, [x, top - self.bar - 8.0 - title.height()]);
             let (picture, zooms) = montage.pictures(tile, column);
             if let Some(color) = tile.color {
-                canvas.rect(Rect::new(x, top - bar, picture.width, bar), Style::fill(color));
+                let bar = Rect::new(x, top - self.bar, picture.width, self.bar);
+                canvas.rect(bar, Style::fill(color));
             }
             let moved = |rect: Rect| Rect::new(rect.x + x, rect.y + top, rect.width, rect.height);
             draw_pictures(
