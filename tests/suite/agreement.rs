@@ -5,10 +5,10 @@ use glam::DVec3;
 use lancer_accel::{BinaryTree, BspTree, Bvh, Grid, KdTree, ObvhsBvh2, ObvhsCwbvh, Octree, Split};
 use lancer_core::generate::icosphere;
 use lancer_core::geometry::{Interval, Ray, Sphere};
-use lancer_core::intersector::{Intersector, LinearScan, TestCounts};
+use lancer_core::intersector::{Intersector, LinearScan, TestCounts, Traversal};
 use lancer_core::scene::{MaterialId, Mesh, Scene, SphereObject};
 
-use crate::meshes::{OFFSETS, cube, moved, scene_of};
+use crate::meshes::{OFFSETS, cube, moved};
 use crate::random::Random;
 
 /// The ways of aiming, each known to break some index.
@@ -125,7 +125,7 @@ fn assert_index_agrees(
 #[test]
 fn on_an_icosphere_at_three_offsets() {
     for offset in OFFSETS {
-        assert_agreement(&scene_of(moved(&icosphere(2), offset)), offset, 4_000);
+        assert_agreement(&Scene::of_mesh(moved(&icosphere(2), offset)), offset, 4_000);
     }
 }
 
@@ -137,13 +137,13 @@ fn on_doubled_faces() {
         let cell = DVec3::new(f64::from(k % 4), f64::from(k / 4 % 4), f64::from(k / 16)) - 1.5;
         mesh.append(&moved(&cube(), 2.0 * cell), glam::DAffine3::from_scale(DVec3::splat(0.25)), 0);
     }
-    assert_agreement(&scene_of(mesh), DVec3::ZERO, 2_000);
+    assert_agreement(&Scene::of_mesh(mesh), DVec3::ZERO, 2_000);
 }
 
 #[test]
 fn on_spheres_among_triangles() {
     let mut random = Random::new(17);
-    let mut scene = scene_of(icosphere(1));
+    let mut scene = Scene::of_mesh(icosphere(1));
     scene.spheres = (0..300)
         .map(|_| SphereObject {
             shape: Sphere { center: random.in_cube(1.5), radius: random.between(0.01, 0.3) },
@@ -181,7 +181,7 @@ fn on_spheres_among_triangles() {
 #[ignore = "soak: 10^5 rays per class; cargo test --release -p lancer-tests -- --ignored"]
 fn soak_on_an_icosphere() {
     for offset in OFFSETS {
-        assert_agreement(&scene_of(moved(&icosphere(3), offset)), offset, 100_000);
+        assert_agreement(&Scene::of_mesh(moved(&icosphere(3), offset)), offset, 100_000);
     }
 }
 
@@ -210,7 +210,7 @@ fn on_degenerate_sets() {
         uneven.push_face(MaterialId(0), &[[first, first + 1, first + 2]]);
     }
     for mesh in [Mesh::default(), triangle(x, y, z), identical, points, uneven] {
-        let scene = scene_of(mesh);
+        let scene = Scene::of_mesh(mesh);
         let oracle = LinearScan::new(&scene);
         let indexes = INDEXES.map(|(name, build)| (name, build(&scene)));
         let mut random = Random::new(23);
@@ -232,7 +232,7 @@ fn on_degenerate_sets() {
 /// A ray that is no ray meets nothing, and nothing panics.
 #[test]
 fn invalid_rays_meet_nothing() {
-    let scene = scene_of(icosphere(2));
+    let scene = Scene::of_mesh(icosphere(2));
     let oracle = LinearScan::new(&scene);
     let indexes = INDEXES.map(|(name, build)| (name, build(&scene)));
     let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
@@ -258,7 +258,7 @@ fn invalid_rays_meet_nothing() {
 /// The tree spares almost all primitive tests, and never makes one that brute force would not.
 #[test]
 fn the_tree_tests_few_primitives() {
-    let scene = scene_of(icosphere(4));
+    let scene = Scene::of_mesh(icosphere(4));
     let (oracle, index) = (LinearScan::new(&scene), ObvhsBvh2::build(&scene));
     let (mut all, mut few) = (TestCounts::default(), TestCounts::default());
     let mut random = Random::new(29);

@@ -13,10 +13,8 @@ use lancer_core::scene::{Material, MaterialId, PointLight, Scene};
 use lancer_core::world::World;
 use lancer_whitted::{AtLimit, RayCounts, Settings, Whitted};
 
-use crate::meshes::scene_of;
-
 fn scene() -> Scene {
-    let mut scene = scene_of(icosphere(1));
+    let mut scene = Scene::of_mesh(icosphere(1));
     scene.camera.eye = DVec3::new(1.0, 2.0, 5.0);
     scene.spheres = sphere_flake(2, MaterialId(1));
     scene.materials.push(Material {

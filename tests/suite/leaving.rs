@@ -8,13 +8,12 @@ use lancer_core::geometry::{Interval, Ray, Sphere};
 use lancer_core::intersector::{Intersector, LinearScan};
 use lancer_core::scene::{MaterialId, Mesh, Scene, SphereObject};
 
-use crate::meshes::scene_of;
 use crate::random::Random;
 
 fn one_triangle(corners: [DVec3; 3]) -> Scene {
     let mut mesh = Mesh { positions: corners.to_vec(), ..Mesh::default() };
     mesh.push_face(MaterialId(0), &[[0, 1, 2]]);
-    scene_of(mesh)
+    Scene::of_mesh(mesh)
 }
 
 /// A coordinate of either sign whose size is uniform over 16 decades.
@@ -91,7 +90,7 @@ fn no_self_hit_on_spheres() {
     for _ in 0..1000 {
         let radius = 10.0_f64.powf(random.between(-6.0, 6.0));
         let center = 10.0_f64.powf(random.between(-6.0, 6.0)) * random.direction();
-        let mut scene = scene_of(Mesh::default());
+        let mut scene = Scene::of_mesh(Mesh::default());
         let shape = Sphere { center, radius };
         scene.spheres.push(SphereObject { shape, material: MaterialId(0) });
         let oracle = LinearScan::new(&scene);
@@ -146,7 +145,7 @@ fn tilted_plane(offset: DVec3) -> Scene {
             mesh.push_face(MaterialId(0), &[[a, a + 18, a + 17]]);
         }
     }
-    scene_of(mesh)
+    Scene::of_mesh(mesh)
 }
 
 /// Counts the rays leaving the plane upwards that `meets` something again.
@@ -217,7 +216,7 @@ fn nothing_passes_between_plates_a_millionth_of_their_distance_apart() {
                 &[[first, first + 1, first + 2], [first, first + 2, first + 3]],
             );
         }
-        let scene = scene_of(mesh);
+        let scene = Scene::of_mesh(mesh);
         let oracle = LinearScan::new(&scene);
         let mut random = Random::new(41);
         let mut tunnelled = 0;
@@ -244,7 +243,7 @@ fn nothing_passes_between_plates_a_millionth_of_their_distance_apart() {
 
 #[test]
 fn nothing_passes_between_spheres_a_millionth_apart() {
-    let mut scene = scene_of(Mesh::default());
+    let mut scene = Scene::of_mesh(Mesh::default());
     for radius in [1.0, 1.0 + 1e-6] {
         let shape = Sphere { center: DVec3::new(3.0, 4.0, 5.0), radius };
         scene.spheres.push(SphereObject { shape, material: MaterialId(0) });
@@ -265,7 +264,7 @@ fn nothing_passes_between_spheres_a_millionth_apart() {
 /// Watertight from close by as well: the error bound that drops self-hits must not drop true ones.
 #[test]
 fn no_leak_from_origins_close_to_a_surface() {
-    let scene = scene_of(icosphere(3));
+    let scene = Scene::of_mesh(icosphere(3));
     let oracle = LinearScan::new(&scene);
     let mut random = Random::new(47);
     for _ in 0..10_000 {

@@ -1,28 +1,15 @@
 //! Closed meshes around the origin, and rays aimed at what their triangles share.
 
 use glam::{DAffine3, DVec3};
-use lancer_core::Rgb;
 use lancer_core::generate::icosphere;
 use lancer_core::geometry::Ray;
-use lancer_core::scene::{Camera, Material, MaterialId, Mesh, Scene};
+use lancer_core::scene::{MaterialId, Mesh};
 
 use crate::random::Random;
 
 /// Where f64 still resolves 1e-10, and Embree's own far offset.
 pub const OFFSETS: [DVec3; 3] =
     [DVec3::ZERO, DVec3::new(148376.0, 1234.0, -223423.0), DVec3::new(1e6, 1e6, 1e6)];
-
-pub fn scene_of(mesh: Mesh) -> Scene {
-    Scene {
-        camera: Camera { eye: DVec3::Z, look_at: DVec3::ZERO, up: DVec3::Y, fov: 40.0 },
-        mesh,
-        spheres: Vec::new(),
-        materials: vec![Material::matte(Rgb::splat(0.5))],
-        lights: Vec::new(),
-        ambient: Rgb::ZERO,
-        background: Rgb::ZERO,
-    }
-}
 
 pub fn moved(mesh: &Mesh, offset: DVec3) -> Mesh {
     let mut result = Mesh::default();

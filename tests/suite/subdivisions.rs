@@ -4,10 +4,10 @@ use glam::DVec3;
 use lancer_accel::{Grid, GridBuilder, Octree, OctreeBuilder};
 use lancer_core::generate::icosphere;
 use lancer_core::geometry::{Bounds3, Interval, Ray};
-use lancer_core::intersector::{Hit, Intersector, LinearScan, Probe, TestCounts};
+use lancer_core::intersector::{Hit, Intersector, LinearScan, Probe, TestCounts, Traversal};
 use lancer_core::scene::{MaterialId, Mesh, Scene};
 
-use crate::meshes::{cube, scene_of};
+use crate::meshes::cube;
 use crate::random::Random;
 
 /// Small triangles, evenly spread in a box.
@@ -59,7 +59,7 @@ fn stadium() -> Scene {
     let corner = |x: f64, z: f64| DVec3::new(1e6 * x, -1.0, 1e6 * z);
     add(&mut mesh, [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0)]);
     add(&mut mesh, [corner(-1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)]);
-    scene_of(mesh)
+    Scene::of_mesh(mesh)
 }
 
 #[test]
@@ -78,7 +78,7 @@ fn hard_scenes_are_valid_and_exact() {
         ("large triangles that overlap", slanted),
         ("soup", soup(2_000, DVec3::ONE, 0.08)),
     ] {
-        assert_both_agree(name, &scene_of(mesh), 300);
+        assert_both_agree(name, &Scene::of_mesh(mesh), 300);
     }
     assert_both_agree("stadium", &stadium(), 300);
 }
@@ -95,7 +95,7 @@ fn large_degenerate_scenes_are_built() {
     let mut uneven = soup(100_000, DVec3::ONE, 0.01);
     add(&mut uneven, [-1e6 * DVec3::X, 1e6 * DVec3::Y, 1e6 * DVec3::Z]);
     for (name, mesh) in [("identical", identical), ("points", points), ("uneven", uneven)] {
-        let scene = scene_of(mesh);
+        let scene = Scene::of_mesh(mesh);
         assert_both_agree(name, &scene, 10);
         let most = 1_000 * scene.mesh.triangles.len();
         assert!(Grid::build(&scene).memory() < most && Octree::build(&scene).memory() < most);
@@ -107,7 +107,7 @@ fn an_octree_keeps_its_depth() {
     let mut mesh = Mesh { positions: vec![DVec3::X, DVec3::Y, DVec3::Z], ..Mesh::default() };
     (0..1_000).for_each(|_| mesh.push_face(MaterialId(0), &[[0, 1, 2]]));
     mesh.append(&icosphere(3), glam::DAffine3::IDENTITY, 0);
-    let scene = scene_of(mesh);
+    let scene = Scene::of_mesh(mesh);
     let leaves = |max_depth| {
         let builder = OctreeBuilder { leaf_size: 0, max_depth, ..OctreeBuilder::default() };
         let octree = builder.build(&scene);
@@ -122,7 +122,7 @@ fn an_octree_keeps_its_depth() {
 /// The leaves fill the cube: no two overlap, and the volumes add up.
 #[test]
 fn the_leaves_of_an_octree_fill_its_cube() {
-    let scene = scene_of(icosphere(3));
+    let scene = Scene::of_mesh(icosphere(3));
     let octree = Octree::build(&scene);
     let volume: f64 =
         octree.leaves().map(|(cell, _)| (cell.max - cell.min).element_product()).sum();
@@ -134,7 +134,7 @@ fn the_leaves_of_an_octree_fill_its_cube() {
 /// Each cell of a ray begins where the last one ended, and lies on the ray.
 #[test]
 fn the_cells_of_a_ray_are_in_order() {
-    let scene = scene_of(soup(3_000, DVec3::ONE, 0.05));
+    let scene = Scene::of_mesh(soup(3_000, DVec3::ONE, 0.05));
     let (grid, octree) = (Grid::build(&scene), Octree::build(&scene));
     let mut random = Random::new(41);
     for _ in 0..300 {
@@ -157,7 +157,7 @@ fn the_cells_of_a_ray_are_in_order() {
 /// A mailbox spares tests and changes nothing else.
 #[test]
 fn mailboxes_change_no_bit() {
-    let scene = scene_of(soup(3_000, DVec3::ONE, 0.2));
+    let scene = Scene::of_mesh(soup(3_000, DVec3::ONE, 0.2));
     let grids = [true, false]
         .map(|mailboxing| GridBuilder { mailboxing, ..GridBuilder::default() }.build(&scene));
     let octrees = [true, false]
@@ -195,7 +195,7 @@ fn first_hit_wins(scene: &Scene, grid: &Grid, ray: &Ray) -> Option<Hit> {
 
 #[test]
 fn the_first_hit_of_a_grid_need_not_be_the_closest() {
-    let scene = scene_of(soup(3_000, DVec3::ONE, 0.2));
+    let scene = Scene::of_mesh(soup(3_000, DVec3::ONE, 0.2));
     let (oracle, grid) = (LinearScan::new(&scene), Grid::build(&scene));
     let mut random = Random::new(47);
     let mut wrong = 0;

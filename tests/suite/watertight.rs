@@ -6,9 +6,9 @@ use glam::DVec3;
 use lancer_accel::ObvhsBvh2;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::intersector::{Intersector, LinearScan};
-use lancer_core::scene::Mesh;
+use lancer_core::scene::{Mesh, Scene};
 
-use crate::meshes::{OFFSETS, Target, aimed_ray, closed_meshes, moved, scene_of};
+use crate::meshes::{OFFSETS, Target, aimed_ray, closed_meshes, moved};
 use crate::random::Random;
 
 /// Rays that leave a closed mesh from the inside without meeting it.
@@ -16,7 +16,7 @@ fn leaks(rays_per_mesh: usize) -> Vec<(String, usize)> {
     let mut counts = Vec::new();
     for (name, mesh) in closed_meshes() {
         for offset in OFFSETS {
-            let scene = scene_of(moved(&mesh, offset));
+            let scene = Scene::of_mesh(moved(&mesh, offset));
             let index = ObvhsBvh2::build(&scene);
             for target in [Target::Vertex, Target::Edge] {
                 let mut random = Random::new(1);
@@ -54,7 +54,7 @@ fn no_leak_in_a_hundred_million_aimed_rays() {
 #[test]
 fn the_oracle_itself_does_not_leak() {
     for (name, mesh) in closed_meshes() {
-        let scene = scene_of(mesh);
+        let scene = Scene::of_mesh(mesh);
         let oracle = LinearScan::new(&scene);
         let mut random = Random::new(2);
         for target in [Target::Vertex, Target::Edge] {
@@ -79,7 +79,7 @@ fn no_leak_at_any_scale() {
         for p in &mut scaled.positions {
             *p *= scale;
         }
-        let scene = scene_of(scaled);
+        let scene = Scene::of_mesh(scaled);
         let index = ObvhsBvh2::build(&scene);
         let mut random = Random::new(3);
         for _ in 0..2_000 {

@@ -11,8 +11,6 @@ use lancer_core::scene::{Material, MaterialId, Mesh, PointLight, Scene, SphereOb
 use lancer_core::world::World;
 use lancer_whitted::{Appel, AtLimit, RayCounts, RayEnd, RayTree, Settings, Whitted, recursion};
 
-use crate::meshes::scene_of;
-
 const UNLIMITED: Settings = Settings { max_depth: 5, min_weight: 0.0, at_limit: AtLimit::Black };
 
 fn trace(scene: &Scene, settings: Settings, ray: Ray) -> (Rgb, RayCounts) {
@@ -79,7 +77,7 @@ fn recursion_by_hand() {
 /// from h = 4 over a sphere of radius 1 at h = 2 to 2.3094 on the floor.
 #[test]
 fn appel_lights_and_shades_a_floor() {
-    let mut scene = scene_of(Mesh::default());
+    let mut scene = Scene::of_mesh(Mesh::default());
     plate(&mut scene, 0.0, 1.0, 0);
     scene.lights.push(PointLight { position: DVec3::Y * 4.0, intensity: Rgb::splat(32.0) });
     let shape = Sphere { center: DVec3::Y * 2.0, radius: 1.0 };
@@ -105,7 +103,7 @@ fn appel_lights_and_shades_a_floor() {
 /// The interior of a diffuse sphere of ρ = ½ lit from its centre: I / r² ρ_d everywhere.
 #[test]
 fn direct_light_in_a_sphere() {
-    let mut scene = scene_of(Mesh::default());
+    let mut scene = Scene::of_mesh(Mesh::default());
     let shape = Sphere { center: DVec3::splat(2.0), radius: 1.0 };
     scene.spheres.push(SphereObject { shape, material: MaterialId(0) });
     scene.lights.push(PointLight { position: shape.center, intensity: Rgb::ONE });
@@ -119,7 +117,7 @@ fn direct_light_in_a_sphere() {
 /// left of it beyond Max_Prof follows the choice of the colour there.
 #[test]
 fn parallel_mirrors_sum_a_geometric_series() {
-    let mut scene = scene_of(Mesh::default());
+    let mut scene = Scene::of_mesh(Mesh::default());
     plate(&mut scene, 0.0, 1.0, 0);
     plate(&mut scene, 1.0, -1.0, 0);
     scene.materials[0] =
@@ -154,7 +152,7 @@ fn parallel_mirrors_sum_a_geometric_series() {
 /// series to infinity, and its variance Var(K) / 4 = 2 / 4. A false alarm in a million.
 #[test]
 fn roulette_is_right_on_average() {
-    let mut scene = scene_of(Mesh::default());
+    let mut scene = Scene::of_mesh(Mesh::default());
     plate(&mut scene, 0.0, 1.0, 0);
     plate(&mut scene, 1.0, -1.0, 0);
     scene.materials[0] =
@@ -191,7 +189,7 @@ fn roulette_is_right_on_average() {
 /// fig:ray-tree: glass that reflects as well splits every ray in two; five bounces make 63 rays.
 #[test]
 fn a_full_binary_tree_of_depth_five_has_63_rays() {
-    let mut scene = scene_of(Mesh::default());
+    let mut scene = Scene::of_mesh(Mesh::default());
     for y in -40..40 {
         plate(&mut scene, f64::from(y), 1.0, 0);
     }
@@ -220,7 +218,7 @@ fn a_full_binary_tree_of_depth_five_has_63_rays() {
 /// Inside glass beyond the critical angle nothing passes, and the mirror ray gets k_s + k_t.
 #[test]
 fn total_reflection_gives_its_share_to_the_mirror() {
-    let mut scene = scene_of(Mesh::default());
+    let mut scene = Scene::of_mesh(Mesh::default());
     plate(&mut scene, 0.0, 1.0, 0);
     plate(&mut scene, -1.0, 1.0, 1);
     scene.materials = vec![
@@ -247,7 +245,7 @@ fn total_reflection_gives_its_share_to_the_mirror() {
 /// A ball of index 1 and k_t = 1 is not there.
 #[test]
 fn glass_of_index_one_is_invisible() {
-    let mut scene = scene_of(Mesh::default());
+    let mut scene = Scene::of_mesh(Mesh::default());
     scene.background = Rgb::new(0.1, 0.2, 0.3);
     scene.materials[0] = Material { k_t: Rgb::ONE, ..Material::matte(Rgb::ZERO) };
     let shape = Sphere { center: DVec3::Z * 4.0, radius: 1.0 };
@@ -262,7 +260,7 @@ fn glass_of_index_one_is_invisible() {
 /// a white surface there has the radiance L A cos cos' / (π d²), and nothing shines backwards.
 #[test]
 fn an_area_light_is_a_point_at_its_centroid() {
-    let mut scene = scene_of(Mesh::default());
+    let mut scene = Scene::of_mesh(Mesh::default());
     plate(&mut scene, 0.0, 1.0, 0);
     scene.materials = vec![
         Material::matte(Rgb::ONE),
@@ -296,7 +294,7 @@ fn an_area_light_is_a_point_at_its_centroid() {
 /// A light in the plane of the receiver does not shine on it: the irradiance is exactly 0.
 #[test]
 fn a_light_in_the_receivers_plane_gives_nothing() {
-    let mut scene = scene_of(Mesh::default());
+    let mut scene = Scene::of_mesh(Mesh::default());
     plate(&mut scene, 0.0, 1.0, 0);
     scene.lights.push(PointLight { position: DVec3::X * 5.0, intensity: Rgb::splat(1e6) });
     let ray = Ray::new(DVec3::new(0.1, 1.0, 0.2), DVec3::NEG_Y);
@@ -310,7 +308,7 @@ fn lamps_do_not_shade_themselves() {
     let turns = [DVec3::NEG_Y, DVec3::new(0.3, -0.9, 0.1), DVec3::new(-0.2, -0.7, 0.6)];
     for center in [0.0, 1e-3, 3.0, 1e4] {
         for n in turns.map(DVec3::normalize) {
-            let mut scene = scene_of(Mesh::default());
+            let mut scene = Scene::of_mesh(Mesh::default());
             plate(&mut scene, center - 3.0, 1.0, 0);
             let lamp = Material { emission: Rgb::ONE, ..Material::matte(Rgb::ZERO) };
             scene.materials.push(lamp);
@@ -344,7 +342,7 @@ fn smooth_sphere(level: u32) -> Scene {
     let mut mesh = lancer_core::generate::icosphere(level);
     mesh.normals = mesh.positions.clone();
     mesh.smooth = mesh.triangles.iter().map(|t| Some(t.vertices)).collect();
-    let mut scene = scene_of(mesh);
+    let mut scene = Scene::of_mesh(mesh);
     scene.materials[0] = Material::matte(Rgb::ONE);
     scene
 }
@@ -397,7 +395,7 @@ fn a_smooth_sphere_is_lit_from_inside() {
 /// A lamp's back is dark, as the light that it gives says.
 #[test]
 fn lamps_shine_on_one_side() {
-    let mut scene = scene_of(Mesh::default());
+    let mut scene = Scene::of_mesh(Mesh::default());
     plate(&mut scene, 0.0, 1.0, 0);
     scene.materials[0] = Material { emission: Rgb::ONE, ..Material::matte(Rgb::ZERO) };
     let look = |y: f64| trace(&scene, UNLIMITED, Ray::new(DVec3::Y * y, -DVec3::Y * y.signum())).0;

@@ -18,12 +18,20 @@ struct Chapter {
     figures: &'static [Figure],
 }
 
-const CHAPTERS: [Chapter; 1] = [Chapter {
-    number: "1",
-    folder: "1-whitted",
-    title: "1 Introduction au lancer de rayons",
-    figures: chapter_1::figures::FIGURES,
-}];
+const CHAPTERS: [Chapter; 2] = [
+    Chapter {
+        number: "1",
+        folder: "1-whitted",
+        title: "1 Introduction au lancer de rayons",
+        figures: chapter_1::figures::FIGURES,
+    },
+    Chapter {
+        number: "4",
+        folder: "4-accel",
+        title: "4 Accélération du lancer de rayons",
+        figures: chapter_4::figures::FIGURES,
+    },
+];
 
 /// Draws the course's figures, each with its data, and a page of all of them.
 ///

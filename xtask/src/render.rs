@@ -3,11 +3,11 @@ use std::str::FromStr;
 use std::time::Instant;
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
+use chapter_4::structures::STRUCTURES;
 use glam::{DVec2, DVec3};
-use lancer_accel::{BspTree, Bvh, Grid, KdTree, ObvhsBvh2, ObvhsCwbvh, Octree};
 use lancer_core::Rgb;
 use lancer_core::image::{ImageSize, check_target, save};
-use lancer_core::intersector::{Intersector, LinearScan};
+use lancer_core::intersector::Intersector;
 use lancer_core::render::{Control, Rendering, render_adaptive, render_pixels};
 use lancer_core::sampling::{Pattern, PixelSampling};
 use lancer_core::scene::load::WarningKind;
@@ -25,33 +25,13 @@ enum Method {
     Whitted,
 }
 
-/// An index of a scene, and the bytes it holds.
-type Built<'s> = (Box<dyn Intersector + 's>, usize);
-
-type Build = for<'s> fn(&'s Scene) -> Built<'s>;
-
-fn built<'s, I: Intersector + 's>(index: I, memory: fn(&I) -> usize) -> Built<'s> {
-    let bytes = memory(&index);
-    (Box::new(index), bytes)
-}
-
 const METHODS: [(&str, Method); 2] = [("appel", Method::Appel), ("whitted", Method::Whitted)];
-const INDEXES: [(&str, Build); 8] = [
-    ("linear", |scene| built(LinearScan::new(scene), |_| 0)),
-    ("bvh", |scene| built(Bvh::build(scene), Bvh::memory)),
-    ("obvhs-bvh2", |scene| built(ObvhsBvh2::build(scene), ObvhsBvh2::memory)),
-    ("obvhs-cwbvh", |scene| built(ObvhsCwbvh::build(scene), ObvhsCwbvh::memory)),
-    ("grid", |scene| built(Grid::build(scene), Grid::memory)),
-    ("octree", |scene| built(Octree::build(scene), Octree::memory)),
-    ("kd", |scene| built(KdTree::build(scene), KdTree::memory)),
-    ("bsp", |scene| built(BspTree::build(scene), BspTree::memory)),
-];
-
 /// Renders a scene by any method of the course.
 ///
 /// SCENE is a .toml file, an .obj file (framed automatically, and lit by a lamp beside the camera if
-/// it has none), or a scene of the course: whitted, room, horizon, or one of flake, tetrahedra and gears
-/// with a level of detail, such as flake:4.
+/// it has none), or a scene of the course: whitted, room, horizon, one of flake, tetrahedra and gears
+/// with a level of detail, such as flake:4, or one of soup, scan, town and stadium with a number of
+/// triangles, such as stadium:100000.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   cargo xtask render whitted --out whitted.png
@@ -136,7 +116,8 @@ fn part(text: &str) -> Result<f64, String> {
 
 pub fn run(args: &Args) -> Result<()> {
     let method = named("method", &args.method, &METHODS)?;
-    let build = named("index", &args.index, &INDEXES)?;
+    let structures = STRUCTURES.map(|structure| (structure.name, structure));
+    let structure = named("index", &args.index, &structures)?;
     check_target(&args.out).context("--out")?;
     progress::watch_for_interrupt()?;
 
@@ -166,10 +147,10 @@ pub fn run(args: &Args) -> Result<()> {
         .context("cannot start the threads")?;
     let rendering = pool.install(|| {
         let start = Instant::now();
-        let (index, bytes) = build(&scene);
-        let mib = bytes as f64 / f64::from(1 << 20);
+        let built = (structure.build)(&scene);
+        let mib = built.bytes as f64 / f64::from(1 << 20);
         say!("index   {:7.3} s   {}, {mib:.1} MiB", start.elapsed().as_secs_f64(), args.index);
-        trace(method, &scene, &*index, args)
+        trace(method, &scene, &*built.index, args)
     })?;
 
     let defects = rendering.image.defects();

@@ -1,7 +1,7 @@
 use std::ops::Range;
 
 use lancer_core::geometry::{Interval, Ray};
-use lancer_core::intersector::{Hit, Intersector, Observer, Probe};
+use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
 use lancer_core::scene::{PrimitiveId, Scene};
 
 use crate::four_boxes::{FourSlabs, Frame, FrameBox};
@@ -128,30 +128,6 @@ impl BinaryTree<'_> {
         }
         seen.all()
     }
-
-    /// Visits the primitives whose boxes the ray meets, the nearer child first, until `done` says so.
-    pub fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        observer: &mut O,
-        done: impl Fn(&Probe) -> bool,
-    ) -> Option<Hit> {
-        let root = self.nodes.first()?;
-        let slabs = FourSlabs::new(ray, &self.frame);
-        let mut descent = Descent {
-            tree: self,
-            slabs,
-            max: slabs.parameter(range.max),
-            probe: Probe::new(self.scene, ray, range),
-            observer,
-            done,
-        };
-        if descent.enter(root).is_some() {
-            descent.visit(root);
-        }
-        descent.probe.best()
-    }
 }
 
 /// A ray on its way down the tree.
@@ -197,13 +173,29 @@ impl<O: Observer, D: Fn(&Probe) -> bool> Descent<'_, O, D> {
     }
 }
 
-impl Intersector for BinaryTree<'_> {
-    fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
-        self.walk(ray, range, &mut (), |_| false)
-    }
-
-    fn occluded(&self, ray: &Ray, range: Interval) -> bool {
-        self.walk(ray, range, &mut (), |_| true).is_some()
+impl Traversal for BinaryTree<'_> {
+    /// Visits the primitives whose boxes the ray meets, the nearer child first, until `done` says so.
+    fn walk<O: Observer>(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        observer: &mut O,
+        done: impl Fn(&Probe) -> bool,
+    ) -> Option<Hit> {
+        let root = self.nodes.first()?;
+        let slabs = FourSlabs::new(ray, &self.frame);
+        let mut descent = Descent {
+            tree: self,
+            slabs,
+            max: slabs.parameter(range.max),
+            probe: Probe::new(self.scene, ray, range),
+            observer,
+            done,
+        };
+        if descent.enter(root).is_some() {
+            descent.visit(root);
+        }
+        descent.probe.best()
     }
 }
 

@@ -2,14 +2,15 @@
 
 use glam::DVec3;
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
-use lancer_core::intersector::{Hit, Intersector, Observer, Probe};
+use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
 use lancer_core::scene::{PrimitiveId, Scene};
 use smallvec::SmallVec;
 
 use crate::spatial::{
-    PARALLEL, Polygon, REFERENCES_PER_PRIMITIVE, clip, depth_limit, grown, margin,
-    shared_allowance, thickness,
+    PARALLEL, Polygon, REFERENCES_PER_PRIMITIVE, clip, depth_limit, margin, shared_allowance,
+    thickness,
 };
+use crate::touching::surface_points;
 
 /// « Subdivision spatiale irrégulière »: a binary space partition, a tree of planes in any direction,
 /// taken from the scene's own polygons.
@@ -349,18 +350,6 @@ impl<'s> BspTree<'s> {
         &self.primitives[first as usize..][..count as usize]
     }
 
-    /// Visits the cells along the ray until one holds a hit, or `done` says so.
-    #[inline]
-    pub fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        observer: &mut O,
-        done: impl Fn(&Probe) -> bool,
-    ) -> Option<Hit> {
-        self.walk_leaves(ray, range, observer, done, |_| {})
-    }
-
     /// [`BspTree::walk`] that also tells the nodes that are leaves.
     #[inline(always)]
     fn walk_leaves<O: Observer>(
@@ -374,7 +363,7 @@ impl<'s> BspTree<'s> {
         let mut probe = Probe::new(self.scene, ray, range);
         // Rounding may move the ray, or the polygon that it meets, across a plane.
         let thickness = thickness(ray, self.bounds) + 2.0 * self.tolerance;
-        let bounds = grown(self.bounds, thickness);
+        let bounds = self.bounds.grown(thickness);
         let mut inside = Slabs::new(ray).cross(bounds.min, bounds.max, range)?;
         let origin = ray.origin - self.bounds.center();
         let test_all = |probe: &mut Probe, observer: &mut O, node: &Node| {
@@ -476,7 +465,9 @@ impl<'s> BspTree<'s> {
             .scene
             .primitives()
             .flat_map(|primitive| {
-                self.points_of(primitive).into_iter().map(move |p| (primitive, p - center))
+                surface_points(self.scene, primitive)
+                    .into_iter()
+                    .map(move |p| (primitive, p - center))
             })
             .collect();
         let (mut next_node, mut next_primitive) = (0, 0);
@@ -525,30 +516,19 @@ impl<'s> BspTree<'s> {
         }
         Ok(())
     }
-
-    /// Points all over a primitive.
-    fn points_of(&self, primitive: PrimitiveId) -> SmallVec<[DVec3; 10]> {
-        let index = primitive.0 as usize;
-        if index < self.scene.mesh.triangles.len() {
-            let [a, b, c] = self.scene.mesh.corners(index);
-            let weights = (0..=3).flat_map(|i| (0..=3 - i).map(move |j| (i, j)));
-            let at = |(i, j)| a + (b - a) * (f64::from(i) / 3.0) + (c - a) * (f64::from(j) / 3.0);
-            weights.map(at).collect()
-        } else {
-            let sphere = self.scene.spheres[index - self.scene.mesh.triangles.len()].shape;
-            let directions = DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]);
-            directions.map(|direction| sphere.center + sphere.radius * direction).collect()
-        }
-    }
 }
 
-impl Intersector for BspTree<'_> {
-    fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
-        self.walk(ray, range, &mut (), |_| false)
-    }
-
-    fn occluded(&self, ray: &Ray, range: Interval) -> bool {
-        self.walk(ray, range, &mut (), |_| true).is_some()
+impl Traversal for BspTree<'_> {
+    /// Visits the cells along the ray until one holds a hit, or `done` says so.
+    #[inline]
+    fn walk<O: Observer>(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        observer: &mut O,
+        done: impl Fn(&Probe) -> bool,
+    ) -> Option<Hit> {
+        self.walk_leaves(ray, range, observer, done, |_| {})
     }
 }
 

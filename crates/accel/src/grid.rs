@@ -1,10 +1,10 @@
 use glam::{DVec3, IVec3, UVec3};
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
-use lancer_core::intersector::{Hit, Intersector, Observer, Probe};
+use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
 use lancer_core::scene::{PrimitiveId, Scene};
 
 use crate::cells::{Cell, RayCells, search};
-use crate::touching::{Footprint, grown, overlap, rounding, slack, surface_points};
+use crate::touching::{Footprint, overlap, rounding, slack, surface_points};
 
 /// The slides' regular subdivision of space, « subdivision spatiale régulière »: a box around the scene
 /// cut into equal cells, each with a list of what comes near it.
@@ -68,10 +68,10 @@ impl GridBuilder {
     /// Builds the grid over all primitives of the scene.
     pub fn build(self, scene: &Scene) -> Grid<'_> {
         let slack = slack(scene.bounds());
-        let bounds = grown(scene.bounds(), slack);
+        let bounds = scene.bounds().grown(slack);
         let boxes: Vec<Bounds3> = scene
             .primitives()
-            .map(|primitive| grown(scene.primitive_bounds(primitive), slack))
+            .map(|primitive| scene.primitive_bounds(primitive).grown(slack))
             .collect();
         let lattice = Lattice::suited(bounds, slack, &boxes, self.density);
         let touched = |index: usize| {
@@ -131,28 +131,11 @@ impl<'s> Grid<'s> {
         })
     }
 
-    /// Visits the primitives of cell after cell along the ray, until `done` says so or the closest hit is
-    /// nearer than the next cell.
-    #[inline]
-    pub fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        observer: &mut O,
-        done: impl Fn(&Probe) -> bool,
-    ) -> Option<Hit> {
-        let probe = Probe::new(self.scene, ray, range);
-        match self.path(ray, range)? {
-            Path::Line(line) => search(line, probe, self.mailboxing, observer, done),
-            Path::Slices(slices) => search(slices, probe, self.mailboxing, observer, done),
-        }
-    }
-
     #[inline]
     fn path(&self, ray: &Ray, range: Interval) -> Option<Path<'_>> {
         let rounding = rounding(ray, self.bounds)?;
         if rounding > self.slack {
-            let Bounds3 { min, max } = grown(self.bounds, rounding);
+            let Bounds3 { min, max } = self.bounds.grown(rounding);
             Slabs::new(ray).enter(min, max, range)?;
             return Some(Path::Slices(Slices(Box::new(self.slices(*ray, rounding)))));
         }
@@ -174,7 +157,7 @@ impl<'s> Grid<'s> {
             let (enter, exit) = (t(slice + i32::from(backwards)), t(slice + i32::from(!backwards)));
             let way = Bounds3::of_points([ray.at(enter), ray.at(exit)]);
             // Once for the planes of the slice, and once for the ray beside them.
-            let [mut low, mut high] = self.lattice.range(grown(way, 2.0 * rounding));
+            let [mut low, mut high] = self.lattice.range(way.grown(2.0 * rounding));
             (low[axis], high[axis]) = (slice, slice);
             cells_between([low, high]).map(move |cell| self.cell(cell, enter))
         })
@@ -205,7 +188,7 @@ impl<'s> Grid<'s> {
                 return Err(format!("cell {at} holds a primitive twice"));
             }
             let near = |&primitive: &PrimitiveId| {
-                let reach = grown(scene.primitive_bounds(primitive), 2.0 * self.slack);
+                let reach = scene.primitive_bounds(primitive).grown(2.0 * self.slack);
                 overlap(reach, cell.bounds)
             };
             if !cell.primitives.iter().all(near) {
@@ -224,13 +207,22 @@ impl<'s> Grid<'s> {
     }
 }
 
-impl Intersector for Grid<'_> {
-    fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
-        self.walk(ray, range, &mut (), |_| false)
-    }
-
-    fn occluded(&self, ray: &Ray, range: Interval) -> bool {
-        self.walk(ray, range, &mut (), |_| true).is_some()
+impl Traversal for Grid<'_> {
+    /// Visits the primitives of cell after cell along the ray, until `done` says so or the closest hit is
+    /// nearer than the next cell.
+    #[inline]
+    fn walk<O: Observer>(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        observer: &mut O,
+        done: impl Fn(&Probe) -> bool,
+    ) -> Option<Hit> {
+        let probe = Probe::new(self.scene, ray, range);
+        match self.path(ray, range)? {
+            Path::Line(line) => search(line, probe, self.mailboxing, observer, done),
+            Path::Slices(slices) => search(slices, probe, self.mailboxing, observer, done),
+        }
     }
 }
 

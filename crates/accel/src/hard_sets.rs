@@ -1,20 +1,7 @@
 //! Sets on which builders recurse for ever, divide by zero or take quadratic time.
 
 use glam::DVec3;
-use lancer_core::Rgb;
-use lancer_core::scene::{Camera, Material, MaterialId, Mesh, Scene};
-
-pub(crate) fn scene_of(mesh: Mesh) -> Scene {
-    Scene {
-        camera: Camera { eye: DVec3::Z, look_at: DVec3::ZERO, up: DVec3::Y, fov: 40.0 },
-        mesh,
-        spheres: Vec::new(),
-        materials: vec![Material::matte(Rgb::ONE)],
-        lights: Vec::new(),
-        ambient: Rgb::ZERO,
-        background: Rgb::ZERO,
-    }
-}
+use lancer_core::scene::{MaterialId, Mesh, Scene};
 
 pub(crate) fn triangles(corners: impl IntoIterator<Item = [DVec3; 3]>) -> Scene {
     let mut mesh = Mesh::default();
@@ -22,7 +9,7 @@ pub(crate) fn triangles(corners: impl IntoIterator<Item = [DVec3; 3]>) -> Scene 
         mesh.positions.extend(corners);
         mesh.push_face(MaterialId(0), &[[k, k + 1, k + 2]]);
     }
-    scene_of(mesh)
+    Scene::of_mesh(mesh)
 }
 
 /// The sets, with `many` triangles where the number matters.

@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
-use lancer_core::intersector::{Hit, Intersector, Observer, Probe};
+use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
 use lancer_core::scene::{PrimitiveId, Scene};
 use smallvec::SmallVec;
 
 use crate::spatial::{
-    Leaf, PARALLEL, Polygon, REFERENCES_PER_PRIMITIVE, clip, common, depth_limit, grown, margin,
+    Leaf, PARALLEL, Polygon, REFERENCES_PER_PRIMITIVE, clip, common, depth_limit, margin,
     shared_allowance, thickness,
 };
 
@@ -111,7 +111,7 @@ impl KdBuilder {
             .primitives()
             .map(|primitive| {
                 let bounds = scene.primitive_bounds(primitive);
-                Reference { primitive, bounds: grown(bounds, margin(bounds)) }
+                Reference { primitive, bounds: bounds.grown(margin(bounds)) }
             })
             .collect();
         let bounds = references.iter().map(|r| r.bounds).fold(Bounds3::EMPTY, Bounds3::union);
@@ -175,7 +175,7 @@ impl KdBuilder {
         }
         let whole = scene.primitive_bounds(reference.primitive);
         let margin = margin(whole);
-        let near = grown(within, margin);
+        let near = within.grown(margin);
         let part = match scene.mesh.triangles.get(reference.primitive.0 as usize) {
             Some(_) => {
                 let corners = scene.mesh.corners(reference.primitive.0 as usize);
@@ -189,7 +189,7 @@ impl KdBuilder {
                 if center.distance(nearest) > radius + margin { Bounds3::EMPTY } else { whole }
             }
         };
-        if part.is_empty() { part } else { common(grown(part, margin), within) }
+        if part.is_empty() { part } else { common(part.grown(margin), within) }
     }
 
     /// The cheapest plane, if it is cheaper than testing all.
@@ -386,18 +386,6 @@ impl<'s> KdTree<'s> {
         size_of_val(self.nodes.as_slice()) + size_of_val(self.primitives.as_slice())
     }
 
-    /// Visits the cells along the ray until one holds a hit, or `done` says so.
-    #[inline]
-    pub fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        observer: &mut O,
-        done: impl Fn(&Probe) -> bool,
-    ) -> Option<Hit> {
-        self.walk_leaves(ray, range, observer, done, |_| {})
-    }
-
     /// [`KdTree::walk`] that also tells the nodes that are leaves.
     #[inline(always)]
     fn walk_leaves<O: Observer>(
@@ -410,7 +398,7 @@ impl<'s> KdTree<'s> {
     ) -> Option<Hit> {
         let mut probe = Probe::new(self.scene, ray, range);
         let thickness = thickness(ray, self.bounds);
-        let bounds = grown(self.bounds, thickness);
+        let bounds = self.bounds.grown(thickness);
         let mut inside = Slabs::new(ray).cross(bounds.min, bounds.max, range)?;
         let (o, d) = (ray.origin.to_array(), ray.direction.to_array());
         let axes: [Thick; 3] = std::array::from_fn(|k| Thick::new(o[k], d[k], thickness));
@@ -558,13 +546,17 @@ impl<'s> KdTree<'s> {
     }
 }
 
-impl Intersector for KdTree<'_> {
-    fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
-        self.walk(ray, range, &mut (), |_| false)
-    }
-
-    fn occluded(&self, ray: &Ray, range: Interval) -> bool {
-        self.walk(ray, range, &mut (), |_| true).is_some()
+impl Traversal for KdTree<'_> {
+    /// Visits the cells along the ray until one holds a hit, or `done` says so.
+    #[inline]
+    fn walk<O: Observer>(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        observer: &mut O,
+        done: impl Fn(&Probe) -> bool,
+    ) -> Option<Hit> {
+        self.walk_leaves(ray, range, observer, done, |_| {})
     }
 }
 

@@ -1,6 +1,6 @@
 use glam::Vec3A;
 use lancer_core::geometry::{Interval, Ray};
-use lancer_core::intersector::{Hit, Intersector, Observer, Probe};
+use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
 use lancer_core::scene::{PrimitiveId, Scene};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
@@ -60,19 +60,6 @@ impl<'s> ObvhsBvh2<'s> {
     pub fn validate(&self) -> Result<(), String> {
         self.0.validate()
     }
-
-    /// Visits the primitives whose boxes the ray meets, the leaves of a node before its other
-    /// children and the nearest of those next, until `done` says so.
-    #[inline]
-    pub fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        observer: &mut O,
-        done: impl Fn(&Probe) -> bool,
-    ) -> Option<Hit> {
-        self.0.walk(ray, range, observer, done)
-    }
 }
 
 /// The primitives' boxes as the library wants them, grown by a margin.
@@ -92,12 +79,17 @@ fn taken_over(node: &Bvh2Node) -> TreeNode {
     }
 }
 
-impl Intersector for ObvhsBvh2<'_> {
-    fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
-        self.walk(ray, range, &mut (), |_| false)
-    }
-
-    fn occluded(&self, ray: &Ray, range: Interval) -> bool {
-        self.walk(ray, range, &mut (), |_| true).is_some()
+impl Traversal for ObvhsBvh2<'_> {
+    /// Visits the primitives whose boxes the ray meets, the leaves of a node before its other
+    /// children and the nearest of those next, until `done` says so.
+    #[inline]
+    fn walk<O: Observer>(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        observer: &mut O,
+        done: impl Fn(&Probe) -> bool,
+    ) -> Option<Hit> {
+        self.0.walk(ray, range, observer, done)
     }
 }

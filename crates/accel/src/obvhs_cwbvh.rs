@@ -1,6 +1,6 @@
 use glam::Vec4;
 use lancer_core::geometry::{Interval, Ray};
-use lancer_core::intersector::{Hit, Intersector, Observer, Probe};
+use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
 use lancer_core::scene::{PrimitiveId, Scene};
 use obvhs::BvhBuildParams;
 use obvhs::cwbvh::builder::build_cwbvh;
@@ -87,11 +87,34 @@ impl<'s> ObvhsCwbvh<'s> {
         let (first, count) = node.child_primitives(slot);
         &self.primitives[first as usize..(first + count) as usize]
     }
+}
 
+/// The boxes of a node's children: corner + step · 2^exponent.
+#[inline(always)]
+fn unpack(node: &CwBvhNode) -> [FourBoxes; 2] {
+    let width = node.compute_extent();
+    let steps = [
+        [node.child_min_x, node.child_max_x],
+        [node.child_min_y, node.child_max_y],
+        [node.child_min_z, node.child_max_z],
+    ];
+    [0, 4].map(|half| {
+        let mut planes = [[Vec4::ZERO; 2]; 3];
+        for axis in 0..3 {
+            planes[axis] = steps[axis].map(|steps| {
+                let steps: [f32; 4] = std::array::from_fn(|lane| f32::from(steps[half + lane]));
+                Vec4::from(steps) * width[axis] + node.p[axis]
+            });
+        }
+        FourBoxes::between(planes)
+    })
+}
+
+impl Traversal for ObvhsCwbvh<'_> {
     /// Visits the primitives whose boxes the ray meets, the leaves of a node before its other
     /// children and the nearest of those next, until `done` says so.
     #[inline]
-    pub fn walk<O: Observer>(
+    fn walk<O: Observer>(
         &self,
         ray: &Ray,
         range: Interval,
@@ -128,37 +151,6 @@ impl<'s> ObvhsCwbvh<'s> {
             next = pending.next(entered, max).map(|index| &self.nodes[index]);
         }
         probe.best()
-    }
-}
-
-/// The boxes of a node's children: corner + step · 2^exponent.
-#[inline(always)]
-fn unpack(node: &CwBvhNode) -> [FourBoxes; 2] {
-    let width = node.compute_extent();
-    let steps = [
-        [node.child_min_x, node.child_max_x],
-        [node.child_min_y, node.child_max_y],
-        [node.child_min_z, node.child_max_z],
-    ];
-    [0, 4].map(|half| {
-        let mut planes = [[Vec4::ZERO; 2]; 3];
-        for axis in 0..3 {
-            planes[axis] = steps[axis].map(|steps| {
-                let steps: [f32; 4] = std::array::from_fn(|lane| f32::from(steps[half + lane]));
-                Vec4::from(steps) * width[axis] + node.p[axis]
-            });
-        }
-        FourBoxes::between(planes)
-    })
-}
-
-impl Intersector for ObvhsCwbvh<'_> {
-    fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
-        self.walk(ray, range, &mut (), |_| false)
-    }
-
-    fn occluded(&self, ray: &Ray, range: Interval) -> bool {
-        self.walk(ray, range, &mut (), |_| true).is_some()
     }
 }
 

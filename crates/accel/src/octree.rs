@@ -2,12 +2,12 @@ use std::collections::VecDeque;
 
 use glam::DVec3;
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
-use lancer_core::intersector::{Hit, Intersector, Observer, Probe};
+use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
 use lancer_core::scene::{PrimitiveId, Scene};
 use smallvec::SmallVec;
 
 use crate::cells::{Cell, RayCells, search};
-use crate::touching::{Footprint, grown, overlap, rounding, slack, surface_points};
+use crate::touching::{Footprint, overlap, rounding, slack, surface_points};
 
 /// The octree, one of the slides' irregular subdivisions of space: a cube around the scene, cut into
 /// eight where too much lies in it.
@@ -108,7 +108,7 @@ impl OctreeBuilder {
     /// Builds the octree over all primitives of the scene.
     pub fn build(self, scene: &Scene) -> Octree<'_> {
         let slack = slack(scene.bounds());
-        let bounds = grown(scene.bounds(), slack);
+        let bounds = scene.bounds().grown(slack);
         // The scene is in the cube's lower corner: in the middle a flat one would lie on both sides of
         // a plane.
         let half = 0.5 * (bounds.max - bounds.min).max_element();
@@ -162,7 +162,7 @@ fn cut(scene: &Scene, slack: f64, uncut: &Uncut) -> [Vec<PrimitiveId>; 8] {
     let parts: [Bounds3; 8] = std::array::from_fn(|number| uncut.cube.part(number).bounds());
     let mut inside: [Vec<PrimitiveId>; 8] = Default::default();
     for &primitive in &uncut.primitives {
-        let bounds = grown(scene.primitive_bounds(primitive), slack);
+        let bounds = scene.primitive_bounds(primitive).grown(slack);
         let near = (0..8).filter(|&number| overlap(bounds, parts[number]));
         let near: SmallVec<[usize; 8]> = near.collect();
         // Most primitives are small: what is near one part only need not be looked at closely.
@@ -212,20 +212,6 @@ impl<'s> Octree<'s> {
         std::iter::from_fn(move || descent.as_mut()?.next(range.max, &mut ()))
     }
 
-    /// Visits the primitives of leaf after leaf along the ray, until `done` says so or the closest hit is
-    /// nearer than all other cubes.
-    #[inline]
-    pub fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        observer: &mut O,
-        done: impl Fn(&Probe) -> bool,
-    ) -> Option<Hit> {
-        let descent = self.descent(ray, range)?;
-        search(descent, Probe::new(self.scene, ray, range), self.mailboxing, observer, done)
-    }
-
     #[inline(always)]
     fn leaf(&self, first: u32, count: u32) -> &[PrimitiveId] {
         &self.primitives[first as usize..first as usize + count as usize]
@@ -267,7 +253,7 @@ impl<'s> Octree<'s> {
                         return Err(format!("leaf {node} holds a primitive twice"));
                     }
                     let near = |&primitive: &PrimitiveId| {
-                        let reach = grown(self.scene.primitive_bounds(primitive), 2.0 * self.slack);
+                        let reach = self.scene.primitive_bounds(primitive).grown(2.0 * self.slack);
                         overlap(reach, cube.bounds())
                     };
                     if !primitives.iter().all(near) {
@@ -304,13 +290,19 @@ impl<'s> Octree<'s> {
     }
 }
 
-impl Intersector for Octree<'_> {
-    fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
-        self.walk(ray, range, &mut (), |_| false)
-    }
-
-    fn occluded(&self, ray: &Ray, range: Interval) -> bool {
-        self.walk(ray, range, &mut (), |_| true).is_some()
+impl Traversal for Octree<'_> {
+    /// Visits the primitives of leaf after leaf along the ray, until `done` says so or the closest hit is
+    /// nearer than all other cubes.
+    #[inline]
+    fn walk<O: Observer>(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        observer: &mut O,
+        done: impl Fn(&Probe) -> bool,
+    ) -> Option<Hit> {
+        let descent = self.descent(ray, range)?;
+        search(descent, Probe::new(self.scene, ray, range), self.mailboxing, observer, done)
     }
 }
 

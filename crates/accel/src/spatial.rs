@@ -26,11 +26,6 @@ pub(crate) fn margin(bounds: Bounds3) -> f64 {
     16.0 * f64::EPSILON * (farthest + (bounds.max - bounds.min).max_element())
 }
 
-/// A box with `margin` more on all sides.
-pub(crate) fn grown(bounds: Bounds3, margin: f64) -> Bounds3 {
-    Bounds3 { min: bounds.min - margin, max: bounds.max + margin }
-}
-
 /// What two boxes have in common.
 pub(crate) fn common(a: Bounds3, b: Bounds3) -> Bounds3 {
     Bounds3 { min: a.min.max(b.min), max: a.max.min(b.max) }
@@ -97,23 +92,10 @@ pub(crate) fn clip(polygon: &[DVec3], distance: impl Fn(DVec3) -> f64) -> Polygo
 #[cfg(test)]
 pub(crate) mod hard {
     use glam::{DAffine3, DVec3};
-    use lancer_core::Rgb;
     use lancer_core::generate::{icosphere, sphere_flake};
-    use lancer_core::scene::{Camera, Material, MaterialId, Mesh, Scene};
+    use lancer_core::scene::{MaterialId, Mesh, Scene};
     use rand_pcg::Pcg64;
     use rand_pcg::rand_core::Rng;
-
-    pub(crate) fn scene_of(mesh: Mesh) -> Scene {
-        Scene {
-            camera: Camera { eye: DVec3::Z, look_at: DVec3::ZERO, up: DVec3::Y, fov: 40.0 },
-            mesh,
-            spheres: Vec::new(),
-            materials: vec![Material::matte(Rgb::splat(0.5))],
-            lights: Vec::new(),
-            ambient: Rgb::ZERO,
-            background: Rgb::ZERO,
-        }
-    }
 
     /// Random points in the cube [−1, 1]³.
     pub(crate) fn points(seed: u128) -> impl FnMut() -> DVec3 {
@@ -173,8 +155,8 @@ pub(crate) mod hard {
             meshes.push(("of extreme size", scaled(&icosphere(3), DVec3::splat(scale))));
         }
         let mut scenes: Vec<_> =
-            meshes.into_iter().map(|(name, mesh)| (name, scene_of(mesh))).collect();
-        let mut mixed = scene_of(icosphere(2));
+            meshes.into_iter().map(|(name, mesh)| (name, Scene::of_mesh(mesh))).collect();
+        let mut mixed = Scene::of_mesh(icosphere(2));
         mixed.spheres = sphere_flake(3, MaterialId(0));
         scenes.push(("spheres and triangles", mixed));
         scenes

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use lancer_core::geometry::{Bounds3, Ray, Sphere};
 use lancer_core::scene::{PrimitiveId, Scene};
+use smallvec::SmallVec;
 
 /// Every rounded operation in question, and few of them follow each other, errs by half an ε.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -27,11 +28,6 @@ pub(crate) fn rounding(ray: &Ray, bounds: Bounds3) -> Option<f64> {
     let distance = (ray.origin - bounds.min).abs().max((ray.origin - bounds.max).abs());
     let valid = ray.origin.is_finite() && ray.direction.is_finite() && !bounds.is_empty();
     valid.then(|| ROUNDING * distance.max_element())
-}
-
-/// The box around some other, with all faces moved outwards.
-pub(crate) fn grown(bounds: Bounds3, by: f64) -> Bounds3 {
-    Bounds3 { min: bounds.min - by, max: bounds.max + by }
 }
 
 /// Whether two closed boxes have a point in common.
@@ -118,10 +114,15 @@ impl Footprint {
 }
 
 /// Some points of a primitive's surface, for validation: a triangle's corners, a sphere's poles.
-pub(crate) fn surface_points(scene: &Scene, primitive: PrimitiveId) -> Vec<DVec3> {
+pub(crate) fn surface_points(scene: &Scene, primitive: PrimitiveId) -> SmallVec<[DVec3; 10]> {
     let index = primitive.0 as usize;
     match index.checked_sub(scene.mesh.triangles.len()) {
-        None => scene.mesh.corners(index).to_vec(),
+        None => {
+            let [a, b, c] = scene.mesh.corners(index);
+            let weights = (0..=3).flat_map(|i| (0..=3 - i).map(move |j| (i, j)));
+            let at = |(i, j)| a + (b - a) * (f64::from(i) / 3.0) + (c - a) * (f64::from(j) / 3.0);
+            weights.map(at).collect()
+        }
         Some(sphere) => {
             let Sphere { center, radius } = scene.spheres[sphere].shape;
             DVec3::AXES.iter().flat_map(|&k| [center - radius * k, center + radius * k]).collect()

@@ -30,6 +30,55 @@ pub trait Intersector: Sync {
     fn occluded(&self, ray: &Ray, range: Interval) -> bool;
 }
 
+/// An [`Intersector`] whose work can be watched, whatever its type.
+pub trait Observable: Intersector {
+    /// Answers as [`Intersector::closest_hit`] or, if any hit will do, as [`Intersector::occluded`]: with
+    /// the hit met first.
+    fn watch(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        any: bool,
+        observer: &mut dyn Observer,
+    ) -> Option<Hit>;
+}
+
+/// An index whose every question is one traversal, which can be watched and stopped. It is an
+/// [`Intersector`], and [`Observable`].
+pub trait Traversal: Sync {
+    /// Visits primitives that the ray may meet in `range` until none can be nearer than the closest met,
+    /// or `done` says so of the one met last. Returns the closest.
+    fn walk<O: Observer>(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        observer: &mut O,
+        done: impl Fn(&Probe) -> bool,
+    ) -> Option<Hit>;
+}
+
+impl<T: Traversal> Intersector for T {
+    fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
+        self.walk(ray, range, &mut (), |_| false)
+    }
+
+    fn occluded(&self, ray: &Ray, range: Interval) -> bool {
+        self.walk(ray, range, &mut (), |_| true).is_some()
+    }
+}
+
+impl<T: Traversal> Observable for T {
+    fn watch(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        any: bool,
+        mut observer: &mut dyn Observer,
+    ) -> Option<Hit> {
+        self.walk(ray, range, &mut observer, |_| any)
+    }
+}
+
 /// Watches a traversal. The methods do nothing unless they are overridden, so watching costs nothing
 /// when nobody does.
 pub trait Observer {
@@ -43,6 +92,20 @@ pub trait Observer {
 
 /// Nobody watches.
 impl Observer for () {}
+
+impl Observer for &mut dyn Observer {
+    fn box_test(&mut self) {
+        (**self).box_test();
+    }
+
+    fn cell_visit(&mut self) {
+        (**self).cell_visit();
+    }
+
+    fn primitive_test(&mut self, primitive: PrimitiveId) {
+        (**self).primitive_test(primitive);
+    }
+}
 
 /// The work of traversals, the same on every machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -143,10 +206,12 @@ impl<'s> LinearScan<'s> {
     pub fn new(scene: &'s Scene) -> Self {
         Self { scene }
     }
+}
 
+impl Traversal for LinearScan<'_> {
     /// Visits the primitives in order until `done` says so.
     #[inline]
-    pub fn walk<O: Observer>(
+    fn walk<O: Observer>(
         &self,
         ray: &Ray,
         range: Interval,
@@ -161,16 +226,6 @@ impl<'s> LinearScan<'s> {
             }
         }
         probe.best()
-    }
-}
-
-impl Intersector for LinearScan<'_> {
-    fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
-        self.walk(ray, range, &mut (), |_| false)
-    }
-
-    fn occluded(&self, ray: &Ray, range: Interval) -> bool {
-        self.walk(ray, range, &mut (), |_| true).is_some()
     }
 }
 

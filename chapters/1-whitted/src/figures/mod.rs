@@ -62,7 +62,7 @@ pub const FIGURES: &[Figure] = &[
 ///
 /// # Panics
 /// If it holds something that is no radiance: a figure would hide that.
-pub(crate) fn shown(image: &Image) -> Picture {
+pub fn shown(image: &Image) -> Picture {
     assert_eq!(image.defects(), Defects::default(), "a picture of radiances");
     let ImageSize { width, height, .. } = image.size();
     Picture::new(width, height, image.to_srgb8(0.0))
@@ -93,7 +93,7 @@ fn error_tile(
 }
 
 /// A picture of a scene: `radiance` along each ray through the picture; `counts` is anything that adds up.
-pub(crate) fn picture<C: Default + Send + AddAssign>(
+pub fn picture<C: Default + Send + AddAssign>(
     scene: &Scene,
     size: ImageSize,
     sampling: PixelSampling,
@@ -123,7 +123,7 @@ fn whitted_picture(scene: &Scene, settings: Settings, size: ImageSize) -> Render
 }
 
 /// The exponent p of y ≈ c xᵖ: the slope between log axes, by least squares.
-fn fitted_exponent(points: &[(f64, f64)]) -> f64 {
+pub fn fitted_exponent(points: &[(f64, f64)]) -> f64 {
     let count = points.len() as f64;
     let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
     let mean_x = logs.iter().map(|(x, _)| x).sum::<f64>() / count;

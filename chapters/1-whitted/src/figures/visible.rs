@@ -7,7 +7,7 @@ use lancer_accel::ObvhsBvh2;
 use lancer_core::Rgb;
 use lancer_core::geometry::{Interval, Ray, Shear, intersect_triangle};
 use lancer_core::image::ImageSize;
-use lancer_core::intersector::{Hit, LinearScan, TestCounts};
+use lancer_core::intersector::{Hit, LinearScan, TestCounts, Traversal};
 use lancer_core::sampling::Uniform;
 use lancer_core::scene::{Camera, Material, MaterialId, Mesh, PrimaryRays, Scene};
 use lancer_figure::{

@@ -3,7 +3,7 @@
 use lancer_accel::ObvhsBvh2;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::image::ImageSize;
-use lancer_core::intersector::{Hit, Intersector, LinearScan, TestCounts};
+use lancer_core::intersector::{Hit, Intersector, LinearScan, TestCounts, Traversal};
 use lancer_core::scene::Scene;
 use lancer_core::world::World;
 use lancer_figure::{

@@ -1,5 +1,5 @@
 use lancer_core::generate::icosphere;
-use lancer_core::intersector::LinearScan;
+use lancer_core::intersector::{Intersector, LinearScan};
 
 use super::*;
 use crate::spatial::hard;
@@ -39,7 +39,7 @@ fn scale_and_place_do_not_change_the_answer() {
 /// All of a convex object is behind each of its faces: their planes part nothing.
 #[test]
 fn a_convex_object_needs_planes_on_edges() {
-    let scene = hard::scene_of(icosphere(3));
+    let scene = Scene::of_mesh(icosphere(3));
     let faces = BspBuilder { planes: Planes::Faces }.build(&scene);
     assert_eq!(leaves(&faces), 1);
     faces.validate().unwrap();
@@ -53,7 +53,7 @@ fn what_lies_in_a_plane_stays_there() {
     for (k, p) in mesh.positions.iter_mut().enumerate() {
         p.z = [0.5, -0.5][k / 3 % 2];
     }
-    let scene = hard::scene_of(mesh);
+    let scene = Scene::of_mesh(mesh);
     let (tree, oracle) = (BspTree::build(&scene), LinearScan::new(&scene));
     tree.validate().unwrap();
     let within = |node: &Node| matches!(node, Node::Inner { count, .. } if *count > 100);
@@ -71,7 +71,7 @@ fn what_lies_in_a_plane_stays_there() {
 
 #[test]
 fn the_cell_of_the_origin_is_visited_first() {
-    let scene = hard::scene_of(icosphere(4));
+    let scene = Scene::of_mesh(icosphere(4));
     let tree = BspTree::build(&scene);
     let mut point = hard::points(53);
     for _ in 0..200 {
@@ -87,7 +87,7 @@ fn the_cell_of_the_origin_is_visited_first() {
 
 #[test]
 fn any_number_of_threads_builds_the_same_tree() {
-    let scene = hard::scene_of(icosphere(5));
+    let scene = Scene::of_mesh(icosphere(5));
     let [one, three] = [1, 3].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| BspTree::build(&scene))

@@ -4,7 +4,7 @@ mod grow;
 
 use glam::Vec3A;
 use lancer_core::geometry::{Interval, Ray};
-use lancer_core::intersector::{Hit, Intersector, Observer, Probe};
+use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
 use lancer_core::scene::{PrimitiveId, Scene};
 use rayon::prelude::*;
 
@@ -71,11 +71,13 @@ impl<'s> Bvh<'s> {
         grow::check_depth(self.statistics())?;
         self.0.validate()
     }
+}
 
+impl Traversal for Bvh<'_> {
     /// Visits the primitives whose boxes the ray meets, the leaves of a node before its other
     /// children and the nearest of those next, until `done` says so.
     #[inline]
-    pub fn walk<O: Observer>(
+    fn walk<O: Observer>(
         &self,
         ray: &Ray,
         range: Interval,
@@ -83,16 +85,6 @@ impl<'s> Bvh<'s> {
         done: impl Fn(&Probe) -> bool,
     ) -> Option<Hit> {
         self.0.walk(ray, range, observer, done)
-    }
-}
-
-impl Intersector for Bvh<'_> {
-    fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
-        self.walk(ray, range, &mut (), |_| false)
-    }
-
-    fn occluded(&self, ray: &Ray, range: Interval) -> bool {
-        self.walk(ray, range, &mut (), |_| true).is_some()
     }
 }
 
@@ -134,7 +126,7 @@ mod tests {
     use lancer_core::intersector::TestCounts;
 
     use super::*;
-    use crate::hard_sets::{hard_sets, scene_of, triangles};
+    use crate::hard_sets::{hard_sets, triangles};
 
     const SPLITS: [Split; 2] = [Split::Median, Split::Sah];
 
@@ -151,7 +143,7 @@ mod tests {
 
     #[test]
     fn a_validation_finds_what_is_wrong() {
-        let scene = scene_of(icosphere(2));
+        let scene = Scene::of_mesh(icosphere(2));
         let broken = |harm: &dyn Fn(&mut BinaryTree)| {
             let mut tree = BinaryTree::build(&scene, Split::Sah);
             harm(&mut tree);
@@ -180,7 +172,7 @@ mod tests {
 
     #[test]
     fn the_tree_is_the_same_for_any_number_of_threads() {
-        let scene = scene_of(icosphere(5));
+        let scene = Scene::of_mesh(icosphere(5));
         for split in SPLITS {
             let built = |threads| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -211,7 +203,7 @@ mod tests {
     fn the_heuristic_saves_work() {
         let mut mesh = icosphere(4);
         mesh.append(&icosphere(4), DAffine3::from_scale(DVec3::splat(1000.0)), 0);
-        let scene = scene_of(mesh);
+        let scene = Scene::of_mesh(mesh);
         let [median, sah] = SPLITS.map(|split| {
             let index = Bvh::with_split(&scene, split);
             let mut counts = TestCounts::default();

@@ -1,5 +1,5 @@
 use lancer_core::generate::icosphere;
-use lancer_core::intersector::{LinearScan, TestCounts};
+use lancer_core::intersector::{Intersector, LinearScan, TestCounts};
 
 use super::*;
 use crate::spatial::hard;
@@ -67,7 +67,7 @@ fn a_ray_in_the_plane_visits_both_sides() {
 /// may be met in a later cell, behind others.
 #[test]
 fn the_first_hit_found_is_not_the_closest() {
-    let scene = hard::scene_of(hard::soup(300, 1.0));
+    let scene = Scene::of_mesh(hard::soup(300, 1.0));
     let tree = KdTree::build(&scene);
     let leaves = tree.leaves();
     let mut wrong = 0;
@@ -88,7 +88,7 @@ fn the_first_hit_found_is_not_the_closest() {
 
 #[test]
 fn leaves_fill_the_box_and_are_visited_in_order() {
-    let scene = hard::scene_of(icosphere(4));
+    let scene = Scene::of_mesh(icosphere(4));
     let tree = KdTree::build(&scene);
     let leaves = tree.leaves();
     let volume = |b: Bounds3| (b.max - b.min).element_product();
@@ -97,7 +97,7 @@ fn leaves_fill_the_box_and_are_visited_in_order() {
     for ray in rays(200) {
         let visited = tree.visited_leaves(&ray, Interval::POSITIVE);
         let enter = |&leaf: &usize| {
-            let Bounds3 { min, max } = grown(leaves[leaf].bounds, 1e-12);
+            let Bounds3 { min, max } = leaves[leaf].bounds.grown(1e-12);
             Slabs::new(&ray).enter(min, max, Interval::POSITIVE).expect("visited: met")
         };
         let entered: Vec<f64> = visited.iter().map(enter).collect();
@@ -109,7 +109,7 @@ fn leaves_fill_the_box_and_are_visited_in_order() {
 
 #[test]
 fn clipping_spares_tests() {
-    let scene = hard::scene_of(hard::soup(2000, 0.5));
+    let scene = Scene::of_mesh(hard::soup(2000, 0.5));
     let boxes = KdBuilder { perfect_splits: false, ..KdBuilder::default() };
     let [clipped, boxed] = [KdTree::build(&scene), boxes.build(&scene)].map(|tree| {
         tree.validate().unwrap();
@@ -124,7 +124,7 @@ fn clipping_spares_tests() {
 
 #[test]
 fn any_number_of_threads_builds_the_same_tree() {
-    let scene = hard::scene_of(icosphere(5));
+    let scene = Scene::of_mesh(icosphere(5));
     let [one, three] = [1, 3].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| KdTree::build(&scene))

@@ -26,6 +26,12 @@ impl Bounds3 {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
+    /// The box with all faces moved outwards by `margin`.
+    #[must_use]
+    pub fn grown(self, margin: f64) -> Self {
+        Self { min: self.min - margin, max: self.max + margin }
+    }
+
     /// Whether it contains nothing.
     pub fn is_empty(&self) -> bool {
         !self.min.cmple(self.max).all()

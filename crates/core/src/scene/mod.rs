@@ -17,6 +17,8 @@ pub use light::PointLight;
 pub use material::{Material, MaterialId, Pigment};
 pub use mesh::{Face, FaceId, Mesh, Triangle};
 
+use glam::DVec3;
+
 use crate::Rgb;
 use crate::geometry::Sphere;
 
@@ -50,6 +52,21 @@ pub struct Scene {
     pub ambient: Rgb,
     /// The radiance of a ray that leaves the scene (« couleur de fond »).
     pub background: Rgb,
+}
+
+impl Scene {
+    /// A grey matte mesh without light, seen from the point one unit before the origin.
+    pub fn of_mesh(mesh: Mesh) -> Self {
+        Self {
+            camera: Camera { eye: DVec3::Z, look_at: DVec3::ZERO, up: DVec3::Y, fov: 40.0 },
+            mesh,
+            spheres: Vec::new(),
+            materials: vec![Material::matte(Rgb::splat(0.5))],
+            lights: Vec::new(),
+            ambient: Rgb::ZERO,
+            background: Rgb::ZERO,
+        }
+    }
 }
 
 /// One primitive of a scene: triangles are numbered first, in mesh order, then spheres.

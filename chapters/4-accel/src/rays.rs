@@ -1,0 +1,101 @@
+//! The rays that indexes are compared on: written once for a scene, given to all.
+
+use lancer_core::geometry::{Interval, Ray, leave_surface};
+use lancer_core::image::ImageSize;
+use lancer_core::intersector::{Hit, Intersector, Observable, TestCounts};
+use lancer_core::sampling::Uniform;
+use lancer_core::scene::{PointLight, Scene};
+
+/// What an index is asked.
+#[derive(Clone, Copy, Debug)]
+pub struct Query {
+    /// The ray.
+    pub ray: Ray,
+    /// Where it looks.
+    pub range: Interval,
+}
+
+/// Where rays come from, which says how alike neighbours are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// From the eye through the pixels' centres, row by row: neighbours are alike.
+    Primary,
+    /// From what those meet to a lamp beside the camera: they end in one point. Any hit will do.
+    Shadow,
+    /// One bounce from what those meet, cosine distributed: neighbours have nothing in common.
+    Diffuse,
+}
+
+impl Kind {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Primary, Self::Shadow, Self::Diffuse];
+
+    /// Its name in figures and benches.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Primary => "primary",
+            Self::Shadow => "shadow",
+            Self::Diffuse => "diffuse",
+        }
+    }
+
+    /// Whether any hit answers the question.
+    pub fn any(self) -> bool {
+        self == Self::Shadow
+    }
+}
+
+/// All rays of one kind.
+pub struct Rays {
+    /// Where they come from.
+    pub kind: Kind,
+    /// The rays.
+    pub queries: Vec<Query>,
+}
+
+impl Rays {
+    /// The three kinds of a scene's picture; `index` says what is met.
+    pub fn of(scene: &Scene, size: ImageSize, index: &dyn Intersector) -> [Self; 3] {
+        let light = PointLight::beside(&scene.camera).position;
+        let camera = scene.camera.primary_rays(size);
+        let [mut primary, mut shadow, mut diffuse] =
+            Kind::ALL.map(|kind| Self { kind, queries: Vec::new() });
+        for y in 0..size.height {
+            for x in 0..size.width {
+                let ray = camera.through(f64::from(x) + 0.5, f64::from(y) + 0.5);
+                primary.queries.push(Query { ray, range: Interval::POSITIVE });
+                let Some(hit) = index.closest_hit(&ray, Interval::POSITIVE) else { continue };
+                let point = scene.surface_at(&ray, &hit);
+                let facing = -point.geometric_normal.dot(ray.direction).signum();
+                let normal = facing * point.geometric_normal;
+                let leave = |d| leave_surface(point.position, point.error, normal, d);
+                let origin = leave(light - point.position);
+                if normal.dot(light - origin) > 0.0 {
+                    let ray = Ray::new(origin, light - origin);
+                    shadow.queries.push(Query { ray, range: Interval::up_to(1.0) });
+                }
+                let direction = normal + Uniform::new(1, x, y).direction();
+                let ray = Ray::new(leave(direction), direction);
+                diffuse.queries.push(Query { ray, range: Interval::POSITIVE });
+            }
+        }
+        [primary, shadow, diffuse]
+    }
+
+    /// Asks an index everything, and returns how many rays hit.
+    pub fn trace(&self, index: &dyn Intersector) -> usize {
+        let hits = |query: &&Query| match self.kind.any() {
+            true => index.occluded(&query.ray, query.range),
+            false => index.closest_hit(&query.ray, query.range).is_some(),
+        };
+        self.queries.iter().filter(hits).count()
+    }
+
+    /// The answers of an index, and its work.
+    pub fn watch(&self, index: &dyn Observable) -> (Vec<Option<Hit>>, TestCounts) {
+        let mut counts = TestCounts::default();
+        let answer =
+            |Query { ray, range }: &Query| index.watch(ray, *range, self.kind.any(), &mut counts);
+        (self.queries.iter().map(answer).collect(), counts)
+    }
+}

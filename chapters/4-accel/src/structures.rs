@@ -1,0 +1,57 @@
+//! Every index of the course by name, the one list that figures, benches and the command line share.
+
+use lancer_accel::{BspTree, Bvh, Grid, KdTree, ObvhsBvh2, ObvhsCwbvh, Octree};
+use lancer_core::intersector::{LinearScan, Observable};
+use lancer_core::scene::Scene;
+
+/// An index by name.
+#[derive(Clone, Copy)]
+pub struct Structure {
+    /// Its name on the command line, which is the name of its colour too.
+    pub name: &'static str,
+    /// Builds it, with its default parameters, over all primitives of a scene.
+    pub build: for<'s> fn(&'s Scene) -> Built<'s>,
+}
+
+/// An index of a scene.
+pub struct Built<'s> {
+    /// Answers.
+    pub index: Box<dyn Observable + 's>,
+    /// Bytes that it holds, without the scene.
+    pub bytes: usize,
+}
+
+impl<'s> Built<'s> {
+    /// An index, and what it says of its memory.
+    pub fn new<I: Observable + 's>(index: I, memory: fn(&I) -> usize) -> Self {
+        let bytes = memory(&index);
+        Self { index: Box::new(index), bytes }
+    }
+}
+
+/// All of them, the oracle first.
+pub const STRUCTURES: [Structure; 8] = [
+    Structure { name: "linear", build: |scene| Built::new(LinearScan::new(scene), |_| 0) },
+    Structure { name: "bvh", build: |scene| Built::new(Bvh::build(scene), Bvh::memory) },
+    Structure {
+        name: "obvhs-bvh2",
+        build: |scene| Built::new(ObvhsBvh2::build(scene), ObvhsBvh2::memory),
+    },
+    Structure {
+        name: "obvhs-cwbvh",
+        build: |scene| Built::new(ObvhsCwbvh::build(scene), ObvhsCwbvh::memory),
+    },
+    Structure { name: "grid", build: |scene| Built::new(Grid::build(scene), Grid::memory) },
+    Structure { name: "octree", build: |scene| Built::new(Octree::build(scene), Octree::memory) },
+    Structure { name: "kd", build: |scene| Built::new(KdTree::build(scene), KdTree::memory) },
+    Structure { name: "bsp", build: |scene| Built::new(BspTree::build(scene), BspTree::memory) },
+];
+
+/// The structure of that name.
+///
+/// # Panics
+/// If there is none.
+pub fn structure(name: &str) -> Structure {
+    let found = STRUCTURES.into_iter().find(|structure| structure.name == name);
+    found.unwrap_or_else(|| panic!("no index is called {name:?}"))
+}
