@@ -2,6 +2,7 @@
 
 use anyhow::{Context, Result};
 use glam::{DAffine3, DMat3, DVec2, DVec3};
+use lancer_core::Rgb;
 use lancer_core::sampling::Uniform;
 use lancer_core::scene::load::{Loaded, UNNAMED};
 use lancer_core::scene::{Camera, MaterialId, Mesh, PointLight, Scene};
@@ -46,7 +47,7 @@ pub const FAMILIES: [Family; 4] = [
         name: "stadium",
         about: "a teapot with most of the triangles, in the middle of a stadium a thousand times as large",
         mesh: stadium,
-        view: View::From(DVec3::new(0.0, 0.25, 0.6), DVec3::new(0.0, 0.08, 0.0)),
+        view: View::From(DVec3::new(6e-4, 1.4e-3, 2.6e-3), DVec3::new(1e-4, 5e-4, 0.0)),
     },
 ];
 
@@ -86,6 +87,7 @@ impl Family {
             View::From(eye, look_at) => Camera { eye, look_at, ..scene.camera },
         };
         scene.lights.push(PointLight::beside(&scene.camera));
+        scene.ambient = Rgb::splat(0.25);
         scene
     }
 }
