@@ -186,7 +186,7 @@ fn wrong_scenes_are_refused_with_a_cure() {
         refusals(&folder, lines)
     };
     assert_snapshot!(refused(&["witted", "flake:99", "flake:x", "room:2"]), @r"
-    error: unknown scene `witted`; known: whitted, flake, room, gears, horizon, tetrahedra; or name a .toml or .obj file
+    error: unknown scene `witted`; known: whitted, flake, town, room, gears, soup, scan, horizon, tetrahedra, stadium; or name a .toml or .obj file
     error: flake:99: the level is a number from 0 to 7
     error: flake:x: the level is a number from 0 to 7
     error: room: only generated scenes have a level; leave it out
@@ -395,7 +395,7 @@ fn steps_that_cannot_be_walked_are_refused() {
     error: invalid value '1' for '--pixel <X,Y>': write column and row as two whole numbers, such as 120,80
     error: invalid value '1,2,3' for '--pixel <X,Y>': write column and row as two whole numbers, such as 120,80
     error: invalid value '17' for '--depth <DEPTH>': write a whole number from 0 to 16
-    error: unknown scene `romo`; known: room, horizon, flake, gears, whitted, tetrahedra; or name a .toml or .obj file
+    error: unknown scene `romo`; known: room, soup, town, scan, horizon, flake, gears, whitted, stadium, tetrahedra; or name a .toml or .obj file
     error: gone.toml: No such file or directory (os error 2); check the path and its permissions
     error: --out: what kind of file is `old.png`? Its name must end in .html
     error: --out: cannot write `missing/new.html`: there is no folder `missing`; create it first
