@@ -2,7 +2,9 @@
 //! aimed where indexes go wrong.
 
 use glam::DVec3;
-use lancer_accel::{BinaryTree, BspTree, Bvh, Grid, KdTree, ObvhsBvh2, ObvhsCwbvh, Octree, Split};
+use lancer_accel::{
+    BinaryTree, BspTree, Bvh, Grid, KdTree, ObvhsBvh2, ObvhsCwbvh, Octree, Split, Wide,
+};
 use lancer_core::generate::icosphere;
 use lancer_core::geometry::{Interval, Ray, Sphere};
 use lancer_core::intersector::{Intersector, LinearScan, TestCounts, Traversal};
@@ -67,7 +69,9 @@ fn aimed(class: &str, mesh: &Mesh, offset: DVec3, random: &mut Random) -> Ray {
 type Build = for<'s> fn(&'s Scene) -> Box<dyn Intersector + 's>;
 
 /// Every index of chapter 4 but the oracle.
-const INDEXES: [(&str, Build); 9] = [
+const INDEXES: [(&str, Build); 11] = [
+    ("wide", |scene| Box::new(Wide::build(scene))),
+    ("wide, scalar", |scene| Box::new(Wide::scalar(scene))),
     ("obvhs-bvh2", |scene| Box::new(ObvhsBvh2::build(scene))),
     ("obvhs-cwbvh", |scene| Box::new(ObvhsCwbvh::build(scene))),
     ("bvh", |scene| Box::new(Bvh::build(scene))),

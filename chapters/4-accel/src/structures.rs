@@ -1,6 +1,6 @@
 //! Every index of the course by name, the one list that figures, benches and the command line share.
 
-use lancer_accel::{BspTree, Bvh, Grid, KdTree, ObvhsBvh2, ObvhsCwbvh, Octree};
+use lancer_accel::{BspTree, Bvh, Grid, KdTree, ObvhsBvh2, ObvhsCwbvh, Octree, Wide};
 use lancer_core::intersector::{LinearScan, Observable};
 use lancer_core::scene::Scene;
 
@@ -30,8 +30,9 @@ impl<'s> Built<'s> {
 }
 
 /// All of them, the oracle first.
-pub const STRUCTURES: [Structure; 8] = [
+pub const STRUCTURES: [Structure; 9] = [
     Structure { name: "linear", build: |scene| Built::new(LinearScan::new(scene), |_| 0) },
+    Structure { name: "wide", build: |scene| Built::new(Wide::build(scene), Wide::memory) },
     Structure { name: "bvh", build: |scene| Built::new(Bvh::build(scene), Bvh::memory) },
     Structure {
         name: "obvhs-bvh2",

@@ -99,12 +99,22 @@ impl Frame {
         Self { center: bounds.center(), to_unit }
     }
 
+    /// A point in this frame.
+    #[inline]
+    pub(crate) fn point(&self, p: DVec3) -> DVec3 {
+        (p - self.center) * self.to_unit
+    }
+
+    /// A difference of points in this frame.
+    pub(crate) fn vector(&self, v: DVec3) -> DVec3 {
+        v * self.to_unit
+    }
+
     /// A box in this frame, rounded outwards by more than the primitive test can err.
     pub(crate) fn outwards(&self, bounds: Bounds3) -> FrameBox {
         let margin = f64::from(f32::EPSILON);
-        let unit = |p: DVec3| (p - self.center) * self.to_unit;
-        let min = (unit(bounds.min) - margin).as_vec3a().to_array().map(f32::next_down);
-        let max = (unit(bounds.max) + margin).as_vec3a().to_array().map(f32::next_up);
+        let min = (self.point(bounds.min) - margin).as_vec3a().to_array().map(f32::next_down);
+        let max = (self.point(bounds.max) + margin).as_vec3a().to_array().map(f32::next_up);
         FrameBox { min: min.into(), max: max.into() }
     }
 }
@@ -120,10 +130,15 @@ impl Frame {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FourSlabs {
     /// Per axis: the ray travels towards smaller coordinates.
-    negative: [bool; 3],
-    inverse: Vec3A,
-    near_offset: Vec3A,
-    far_offset: Vec3A,
+    pub(crate) negative: [bool; 3],
+    pub(crate) inverse: Vec3A,
+    pub(crate) near_offset: Vec3A,
+    pub(crate) far_offset: Vec3A,
+    /// The ray itself, rounded, for tests of triangles.
+    pub(crate) origin: Vec3A,
+    pub(crate) direction: Vec3A,
+    /// By how much its origin may have been moved aside before it was rounded.
+    pub(crate) moved: f32,
     /// The parameter in units of the boxes is `t · per_unit − skipped`.
     per_unit: f64,
     skipped: f64,
@@ -137,7 +152,7 @@ impl FourSlabs {
     /// Prepares the tests of a ray.
     #[inline]
     pub(crate) fn new(ray: &Ray, frame: &Frame) -> Self {
-        let origin = (ray.origin - frame.center) * frame.to_unit;
+        let origin = frame.point(ray.origin);
         let length_squared = ray.direction.length_squared();
         if origin.length_squared() <= 16.0 && length_squared > 1e-18 && length_squared < 1e18 {
             Self::prepare(origin, ray.direction, 0.0, frame.to_unit, 0.0)
@@ -171,6 +186,9 @@ impl FourSlabs {
             inverse,
             near_offset: offset - widen,
             far_offset: offset + widen,
+            origin,
+            direction,
+            moved,
             // A parameter is rounded up when it becomes an `f32`.
             per_unit: per_unit * (1.0 + f64::from(f32::EPSILON)),
             skipped,

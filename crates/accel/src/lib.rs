@@ -21,6 +21,7 @@ mod octree;
 mod pending;
 mod spatial;
 mod touching;
+mod wide;
 
 pub use binary_tree::{BinaryTree, TreeStatistics};
 pub use bsp::{BspBuilder, BspTree, Planes};
@@ -32,3 +33,4 @@ pub use obvhs_bvh2::ObvhsBvh2;
 pub use obvhs_cwbvh::ObvhsCwbvh;
 pub use octree::{Octree, OctreeBuilder};
 pub use spatial::Leaf;
+pub use wide::Wide;

@@ -8,7 +8,7 @@ use crate::four_boxes::FrameBox;
 const NODE_COST: f32 = 1.0;
 /// Nodes with more primitives are always divided: so a leaf of boxes that overlap all the same does
 /// not have all of them.
-const MAX_LEAF: usize = 4;
+pub(super) const MAX_LEAF: usize = 4;
 /// Bins along an axis. Twice as many lower the cost of a tree by less than 1 %.
 const BINS: usize = 16;
 /// At this depth the heuristic is given up and nodes are halved, which ends within log2 of 2³²
@@ -18,9 +18,18 @@ const MAX_DEPTH: usize = SAH_DEPTH + 32;
 /// Subtrees of fewer primitives are not worth a task of their own.
 const TASK: usize = 4096;
 
+/// What a tree is to be like.
+#[derive(Clone, Copy)]
+pub(super) struct Rule {
+    /// How nodes are divided.
+    pub(super) split: Split,
+    /// Primitives of a leaf at most.
+    pub(super) max_leaf: usize,
+}
+
 /// Sorts the items into leaves and returns the nodes above them.
-pub(super) fn tree(items: &mut [Item], split: Split) -> Vec<TreeNode> {
-    if items.is_empty() { Vec::new() } else { subtree(items, 0, 0, split) }
+pub(super) fn tree(items: &mut [Item], rule: Rule) -> Vec<TreeNode> {
+    if items.is_empty() { Vec::new() } else { subtree(items, 0, 0, rule) }
 }
 
 pub(super) fn check_depth(statistics: &TreeStatistics) -> Result<(), String> {
@@ -31,9 +40,9 @@ pub(super) fn check_depth(statistics: &TreeStatistics) -> Result<(), String> {
 const UNKNOWN: TreeNode = TreeNode { bounds: FrameBox::EMPTY, first: 0, count: 0 };
 
 /// The nodes of a subtree, its root first. `first` is where its items stand among all.
-fn subtree(items: &mut [Item], first: u32, depth: usize, split: Split) -> Vec<TreeNode> {
+fn subtree(items: &mut [Item], first: u32, depth: usize, rule: Rule) -> Vec<TreeNode> {
     let mut nodes = vec![UNKNOWN];
-    grow(&mut nodes, 0, items, first, depth, split);
+    grow(&mut nodes, 0, items, first, depth, rule);
     nodes
 }
 
@@ -44,10 +53,10 @@ fn grow(
     items: &mut [Item],
     first: u32,
     depth: usize,
-    split: Split,
+    rule: Rule,
 ) {
     let bounds = items.iter().fold(FrameBox::EMPTY, |bounds, item| bounds.union(item.bounds));
-    let Some(middle) = divide(items, bounds, depth, split) else {
+    let Some(middle) = divide(items, bounds, depth, rule) else {
         nodes[node] = TreeNode { bounds, first, count: items.len() as u32 };
         return;
     };
@@ -60,14 +69,14 @@ fn grow(
     let (first, second, depth) = (first, first + middle as u32, depth + 1);
     if parallel {
         let (below_left, below_right) = rayon::join(
-            || subtree(lefts, first, depth, split),
-            || subtree(rights, second, depth, split),
+            || subtree(lefts, first, depth, rule),
+            || subtree(rights, second, depth, rule),
         );
         graft(nodes, left, below_left);
         graft(nodes, right, below_right);
     } else {
-        grow(nodes, left, lefts, first, depth, split);
-        grow(nodes, right, rights, second, depth, split);
+        grow(nodes, left, lefts, first, depth, rule);
+        grow(nodes, right, rights, second, depth, rule);
     }
 }
 
@@ -84,12 +93,12 @@ fn graft(nodes: &mut Vec<TreeNode>, place: usize, subtree: Vec<TreeNode>) {
 
 /// Sorts a node's items into those of its left child and those of its right one, and returns how many
 /// are left, if it is to have children.
-fn divide(items: &mut [Item], bounds: FrameBox, depth: usize, split: Split) -> Option<usize> {
-    let too_many = items.len() > MAX_LEAF;
-    if items.len() == 1 || (split == Split::Median && !too_many) {
+fn divide(items: &mut [Item], bounds: FrameBox, depth: usize, rule: Rule) -> Option<usize> {
+    let too_many = items.len() > rule.max_leaf;
+    if items.len() == 1 || (rule.split == Split::Median && !too_many) {
         return None;
     }
-    if split == Split::Median || depth >= SAH_DEPTH {
+    if rule.split == Split::Median || depth >= SAH_DEPTH {
         return too_many.then(|| halve(items));
     }
     let Some(plane) = best_plane(items) else { return too_many.then(|| halve(items)) };
@@ -221,6 +230,8 @@ mod tests {
     use super::*;
     use lancer_core::scene::PrimitiveId;
 
+    const RULE: Rule = Rule { split: Split::Sah, max_leaf: MAX_LEAF };
+
     /// A box of half a unit around each point.
     fn items(centers: impl IntoIterator<Item = Vec3A>) -> Vec<Item> {
         let around = |center| FrameBox { min: center - 0.25, max: center + 0.25 };
@@ -267,7 +278,7 @@ mod tests {
         let parts = |distance| {
             let mut pair = items([Vec3A::ZERO, Vec3A::X * distance]);
             let around = pair[0].bounds.union(pair[1].bounds);
-            divide(&mut pair, around, 0, Split::Sah)
+            divide(&mut pair, around, 0, RULE)
         };
         // With two cubes of half area 3/4 a split costs A + 3/2, a leaf 2 A, and A = 3/4 + distance.
         assert_eq!((parts(0.5), parts(1.0)), (None, Some(1)));
@@ -278,8 +289,8 @@ mod tests {
     fn below_the_limit_the_tree_is_halved() {
         // Each step along this row is nine tenths of the last: the heuristic takes off the first few.
         let row = || items((0..1 << 10).map(|k| Vec3A::X * 0.9_f32.powi(k)));
-        let balanced = subtree(&mut row(), 0, SAH_DEPTH, Split::Sah);
+        let balanced = subtree(&mut row(), 0, SAH_DEPTH, RULE);
         assert_eq!(depth(&balanced, 0), 8);
-        assert!(depth(&tree(&mut row(), Split::Sah), 0) > 8);
+        assert!(depth(&tree(&mut row(), RULE), 0) > 8);
     }
 }

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use crate::binary_tree::{BinaryTree, TreeStatistics};
 use crate::four_boxes::{Frame, FrameBox};
 use crate::four_wide::FourWide;
+use grow::{MAX_LEAF, Rule};
 
 /// How a node's primitives are divided between its two children.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -91,6 +92,15 @@ impl Traversal for Bvh<'_> {
 impl<'s> BinaryTree<'s> {
     /// Builds the tree over all primitives of the scene. It is the same for any number of threads.
     pub fn build(scene: &'s Scene, split: Split) -> Self {
+        Self::grown(scene, Rule { split, max_leaf: MAX_LEAF })
+    }
+
+    /// The tree by the surface area heuristic down to single primitives, to be collapsed.
+    pub(crate) fn of_single_primitives(scene: &'s Scene) -> Self {
+        Self::grown(scene, Rule { split: Split::Sah, max_leaf: 1 })
+    }
+
+    fn grown(scene: &'s Scene, rule: Rule) -> Self {
         let frame = Frame::of(scene.bounds());
         let item = |id| {
             let primitive = PrimitiveId(id);
@@ -98,7 +108,7 @@ impl<'s> BinaryTree<'s> {
         };
         let mut items: Vec<Item> =
             (0..scene.primitives().len() as u32).into_par_iter().map(item).collect();
-        let nodes = grow::tree(&mut items, split);
+        let nodes = grow::tree(&mut items, rule);
         let primitives = items.iter().map(|item| item.primitive).collect();
         Self { scene, frame, nodes, primitives }
     }

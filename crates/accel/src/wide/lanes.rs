@@ -1,0 +1,271 @@
+//! Eight `f32` at once: by AVX2 where the processor has it, and by a scalar twin everywhere.
+
+/// A way to compute with eight numbers at once.
+///
+/// The value says that the processor can do it. The twins may round differently (`mul_add` rounds once or
+/// twice): the bounds of the tests hold for both, and so do their answers.
+pub(super) trait Lanes: Copy {
+    /// Eight numbers.
+    type F: Copy;
+
+    fn splat(self, x: f32) -> Self::F;
+    fn load(self, x: &[f32; 8]) -> Self::F;
+    /// `N` rows of `n` ≤ 8 numbers that stand one after another; the other lanes are 0.
+    fn rows<const N: usize>(self, x: &[f32], n: usize) -> [Self::F; N];
+    fn store(self, x: Self::F) -> [f32; 8];
+    fn add(self, a: Self::F, b: Self::F) -> Self::F;
+    fn sub(self, a: Self::F, b: Self::F) -> Self::F;
+    fn mul(self, a: Self::F, b: Self::F) -> Self::F;
+    fn div(self, a: Self::F, b: Self::F) -> Self::F;
+    /// a b + c
+    fn mul_add(self, a: Self::F, b: Self::F, c: Self::F) -> Self::F;
+    /// a b − c
+    fn mul_sub(self, a: Self::F, b: Self::F, c: Self::F) -> Self::F;
+    /// The smaller, `b` if one is NaN.
+    fn min(self, a: Self::F, b: Self::F) -> Self::F;
+    /// The larger, `b` if one is NaN.
+    fn max(self, a: Self::F, b: Self::F) -> Self::F;
+    /// `a` with its sign turned where `sign` is negative.
+    fn turn(self, a: Self::F, sign: Self::F) -> Self::F;
+    fn abs(self, a: Self::F) -> Self::F;
+    /// One bit per lane: a ≥ b.
+    fn at_least(self, a: Self::F, b: Self::F) -> u32;
+    /// One bit per lane: a > b.
+    fn above(self, a: Self::F, b: Self::F) -> u32;
+}
+
+/// One lane after the other. The compiler makes of it what the target always has: SSE2, NEON.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scalar;
+
+#[inline(always)]
+fn each(f: impl FnMut(usize) -> f32) -> [f32; 8] {
+    std::array::from_fn(f)
+}
+
+#[inline(always)]
+fn bits(f: impl Fn(usize) -> bool) -> u32 {
+    (0..8).fold(0, |bits, lane| bits | u32::from(f(lane)) << lane)
+}
+
+impl Lanes for Scalar {
+    type F = [f32; 8];
+
+    #[inline(always)]
+    fn splat(self, x: f32) -> [f32; 8] {
+        [x; 8]
+    }
+
+    #[inline(always)]
+    fn load(self, x: &[f32; 8]) -> [f32; 8] {
+        *x
+    }
+
+    #[inline(always)]
+    fn rows<const N: usize>(self, x: &[f32], n: usize) -> [[f32; 8]; N] {
+        std::array::from_fn(|row| {
+            let mut lanes = [0.0; 8];
+            lanes[..n].copy_from_slice(&x[row * n..][..n]);
+            lanes
+        })
+    }
+
+    #[inline(always)]
+    fn store(self, x: [f32; 8]) -> [f32; 8] {
+        x
+    }
+
+    #[inline(always)]
+    fn add(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+        each(|k| a[k] + b[k])
+    }
+
+    #[inline(always)]
+    fn sub(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+        each(|k| a[k] - b[k])
+    }
+
+    #[inline(always)]
+    fn mul(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+        each(|k| a[k] * b[k])
+    }
+
+    #[inline(always)]
+    fn div(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+        each(|k| a[k] / b[k])
+    }
+
+    #[inline(always)]
+    fn mul_add(self, a: [f32; 8], b: [f32; 8], c: [f32; 8]) -> [f32; 8] {
+        each(|k| a[k] * b[k] + c[k])
+    }
+
+    #[inline(always)]
+    fn mul_sub(self, a: [f32; 8], b: [f32; 8], c: [f32; 8]) -> [f32; 8] {
+        each(|k| a[k] * b[k] - c[k])
+    }
+
+    #[inline(always)]
+    fn min(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+        each(|k| if a[k] < b[k] { a[k] } else { b[k] })
+    }
+
+    #[inline(always)]
+    fn max(self, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+        each(|k| if a[k] > b[k] { a[k] } else { b[k] })
+    }
+
+    #[inline(always)]
+    fn turn(self, a: [f32; 8], sign: [f32; 8]) -> [f32; 8] {
+        each(|k| f32::from_bits(a[k].to_bits() ^ (sign[k].to_bits() & 1 << 31)))
+    }
+
+    #[inline(always)]
+    fn abs(self, a: [f32; 8]) -> [f32; 8] {
+        each(|k| a[k].abs())
+    }
+
+    #[inline(always)]
+    fn at_least(self, a: [f32; 8], b: [f32; 8]) -> u32 {
+        bits(|k| a[k] >= b[k])
+    }
+
+    #[inline(always)]
+    fn above(self, a: [f32; 8], b: [f32; 8]) -> u32 {
+        bits(|k| a[k] > b[k])
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[allow(unsafe_code)]
+pub(super) mod avx2 {
+    //! The only `unsafe` of the course. Every intrinsic here needs AVX2 or FMA and nothing else: a value
+    //! of [`Avx2`] exists only where the processor was found to have both. Loads and stores go through
+    //! references or slices whose lengths are checked.
+
+    use std::arch::x86_64::*;
+
+    use super::Lanes;
+
+    /// A processor with AVX2 and FMA.
+    #[derive(Clone, Copy, Debug)]
+    pub(in crate::wide) struct Avx2(());
+
+    impl Avx2 {
+        pub(in crate::wide) fn detect() -> Option<Self> {
+            let found = is_x86_feature_detected!("avx2")
+                && is_x86_feature_detected!("fma")
+                && is_x86_feature_detected!("bmi1")
+                && is_x86_feature_detected!("bmi2")
+                && is_x86_feature_detected!("lzcnt")
+                && is_x86_feature_detected!("popcnt");
+            found.then_some(Self(()))
+        }
+
+        /// Calls `f`, which is compiled for this processor with everything inlined into it.
+        #[inline(always)]
+        pub(in crate::wide) fn call<R>(self, f: impl FnOnce(Self) -> R) -> R {
+            #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+            #[inline]
+            fn inner<R>(lanes: Avx2, f: impl FnOnce(Avx2) -> R) -> R {
+                f(lanes)
+            }
+            // SAFETY: `self` says that the processor has these features.
+            unsafe { inner(self, f) }
+        }
+    }
+
+    /// `MASKS[8 − n..]` begins with n lanes to be loaded.
+    static MASKS: [i32; 16] = [-1, -1, -1, -1, -1, -1, -1, -1, 0, 0, 0, 0, 0, 0, 0, 0];
+
+    // SAFETY of all blocks below: see the module's documentation.
+    impl Lanes for Avx2 {
+        type F = __m256;
+
+        #[inline(always)]
+        fn splat(self, x: f32) -> __m256 {
+            unsafe { _mm256_set1_ps(x) }
+        }
+
+        #[inline(always)]
+        fn load(self, x: &[f32; 8]) -> __m256 {
+            unsafe { _mm256_loadu_ps(x.as_ptr()) }
+        }
+
+        #[inline(always)]
+        fn rows<const N: usize>(self, x: &[f32], n: usize) -> [__m256; N] {
+            assert!(n <= 8 && x.len() >= N * n);
+            unsafe {
+                let mask = _mm256_loadu_si256(MASKS.as_ptr().add(8 - n).cast());
+                std::array::from_fn(|row| _mm256_maskload_ps(x.as_ptr().add(row * n), mask))
+            }
+        }
+
+        #[inline(always)]
+        fn store(self, x: __m256) -> [f32; 8] {
+            let mut lanes = [0.0; 8];
+            unsafe { _mm256_storeu_ps(lanes.as_mut_ptr(), x) };
+            lanes
+        }
+
+        #[inline(always)]
+        fn add(self, a: __m256, b: __m256) -> __m256 {
+            unsafe { _mm256_add_ps(a, b) }
+        }
+
+        #[inline(always)]
+        fn sub(self, a: __m256, b: __m256) -> __m256 {
+            unsafe { _mm256_sub_ps(a, b) }
+        }
+
+        #[inline(always)]
+        fn mul(self, a: __m256, b: __m256) -> __m256 {
+            unsafe { _mm256_mul_ps(a, b) }
+        }
+
+        #[inline(always)]
+        fn div(self, a: __m256, b: __m256) -> __m256 {
+            unsafe { _mm256_div_ps(a, b) }
+        }
+
+        #[inline(always)]
+        fn mul_add(self, a: __m256, b: __m256, c: __m256) -> __m256 {
+            unsafe { _mm256_fmadd_ps(a, b, c) }
+        }
+
+        #[inline(always)]
+        fn mul_sub(self, a: __m256, b: __m256, c: __m256) -> __m256 {
+            unsafe { _mm256_fmsub_ps(a, b, c) }
+        }
+
+        #[inline(always)]
+        fn min(self, a: __m256, b: __m256) -> __m256 {
+            unsafe { _mm256_min_ps(a, b) }
+        }
+
+        #[inline(always)]
+        fn max(self, a: __m256, b: __m256) -> __m256 {
+            unsafe { _mm256_max_ps(a, b) }
+        }
+
+        #[inline(always)]
+        fn turn(self, a: __m256, sign: __m256) -> __m256 {
+            unsafe { _mm256_xor_ps(a, _mm256_and_ps(sign, _mm256_set1_ps(-0.0))) }
+        }
+
+        #[inline(always)]
+        fn abs(self, a: __m256) -> __m256 {
+            unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), a) }
+        }
+
+        #[inline(always)]
+        fn at_least(self, a: __m256, b: __m256) -> u32 {
+            unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(a, b)) as u32 }
+        }
+
+        #[inline(always)]
+        fn above(self, a: __m256, b: __m256) -> u32 {
+            unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(a, b)) as u32 }
+        }
+    }
+}

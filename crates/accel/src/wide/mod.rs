@@ -1,0 +1,290 @@
+//! « Accélération matérielle », on the processor: eight boxes, then eight triangles at a time.
+
+mod collapse;
+mod lanes;
+mod walk;
+
+use lancer_core::geometry::{Interval, Ray};
+use lancer_core::intersector::{Hit, Intersector, Observable, Observer, Probe};
+use lancer_core::scene::{PrimitiveId, Scene};
+
+use crate::binary_tree::{BinaryTree, Seen};
+use crate::four_boxes::{Frame, FrameBox};
+use collapse::WIDTH;
+use lanes::Scalar;
+#[cfg(target_arch = "x86_64")]
+use lanes::avx2::Avx2;
+
+/// A hierarchy of eight children per node: culled eight at a time in `f32`, answered in `f64`.
+///
+/// *Built* from the binary tree of [`crate::Bvh`], grown down to single primitives, by the cheapest
+/// collapse (dynamic programming): a node takes in up to eight descendants, a leaf up to eight triangles.
+///
+/// ```text
+/// node, 256 bytes     lowest x [8]  highest x [8]  lowest y [8]  …  highest z [8]   f32, rounded outwards
+///                     child [8]     a node, or a leaf and its number of primitives
+/// leaf, words of 4    longest edge component s,
+///                     a.x [n] a.y [n] a.z [n]   one corner
+///                     e.x [n] e.y [n] e.z [n]   to the second
+///                     f.x [n] f.y [n] f.z [n]   to the third
+///                     id [n]                    41 bytes a triangle at n = 8, without gaps
+/// ```
+///
+/// All coordinates are those of the scene's own frame, [−1, 1]³: `f32` keeps its digits wherever the scene
+/// is.
+///
+/// # What makes it fast, and what keeps it exact
+///
+/// - Eight slabs take 6 multiply-adds, 6 minima and maxima and one comparison; one box takes as many.
+/// - Children are visited near to far. With one or two of them met the nearer never passes through the stack.
+/// - Triangles are filtered eight at a time in `f32`, against *bounds* instead of 0: the filter keeps all that
+///   `f64` might accept. Most that it keeps are *certain*: `f64` must accept them too, so they shorten
+///   the ray at once, and a shadow ray ends there without any `f64`.
+/// - `f64` decides among the few that are left, at the end of the walk: one primitive for most rays. The answer
+///   is that of [`lancer_core::intersector::LinearScan`], bit for bit.
+///
+/// # The bounds
+///
+/// With C = a − o, N = e × f, R = C × d the ray o + t d meets the plane at t = T / Δ with the weights U / Δ
+/// and V / Δ (Möller and Trumbore), where
+///
+/// ```text
+/// Δ = N·d     T = N·C     U = R·f     V = −R·e     W = Δ − U − V
+/// ```
+///
+/// Let u = 2⁻²⁴, D = 1 + |o| (so |C| ≤ D), δ = |d| and s = the longest edge component, all in the maximum
+/// norm. Rounding a, o, and their difference moves C by 2 u D; e and f were rounded from exact differences and
+/// are off by u s, d by u δ. To first order in u, each product's operands and the operations themselves add:
+///
+/// ```text
+/// R   ≤ 2 D δ      off by  2 (2 + 1) u D δ + 4 u D δ            =  10 u D δ
+/// U,V ≤ 6 D δ s    off by  3 (10 + 2) u D δ s + 3 · 3 · 2 u D δ s =  54 u D δ s
+/// N   ≤ 2 s²       off by  2 · 2 u s² + 3 u s²                  =   7 u s²
+/// Δ   ≤ 6 s² δ     off by  3 (7 + 2) u s² δ + 3 · 3 · 2 u s² δ  =  45 u s² δ
+/// T   ≤ 6 s² D     off by  3 (7 + 4) u s² D + 3 · 3 · 2 u s² D  =  51 u s² D
+/// W                off by  2 · 54 + 2 · 45 + 2 (6 + 6 + 6)      ≤ 234 u D δ s      since s ≤ 2 D
+/// ```
+///
+/// so with e = 256 u D δ s, e_Δ = 64 u s² δ and e_T = 64 u s² D whatever has U, V, W ≥ 0 is kept by
+/// U, V, W ≥ −e, and U, V, W > e, T > e_T, |Δ| > 2 e_Δ imply a true hit. The slack beyond first order, and the noise of
+/// the `f64` test (2⁻²⁹ of this in U, V, W; its own bound on t is below 60 · 2⁻⁵³ D² s / Δ) are covered
+/// because s is at least 2⁻²⁰. An origin that was moved close to the scene adds its rounding to D.
+pub struct Wide<'s> {
+    scene: &'s Scene,
+    frame: Frame,
+    /// The first is the root.
+    nodes: Vec<Node>,
+    /// Words of leaves.
+    leaves: Vec<f32>,
+    kernel: Kernel,
+}
+
+/// Edges count as this long at least.
+const SHORTEST: f32 = 1.0 / (1 << 20) as f32;
+/// Leaves begin at multiples of this many words.
+const UNIT: usize = 4;
+
+/// What computes with eight lanes.
+#[derive(Clone, Copy, Debug)]
+enum Kernel {
+    #[cfg(target_arch = "x86_64")]
+    Avx2(Avx2),
+    Scalar(Scalar),
+}
+
+impl Kernel {
+    fn best() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(avx2) = Avx2::detect() {
+            return Self::Avx2(avx2);
+        }
+        Self::Scalar(Scalar)
+    }
+}
+
+/// An inner node. A lane without a child has an empty box, which no ray meets.
+#[repr(align(64))]
+#[derive(Clone, Debug)]
+struct Node {
+    /// Lowest x, highest x, lowest y, …
+    planes: [[f32; WIDTH]; 6],
+    children: [Child; WIDTH],
+}
+
+impl Node {
+    const EMPTY: Self = {
+        let (low, high) = ([f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]);
+        Self { planes: [low, high, low, high, low, high], children: [Child(0); WIDTH] }
+    };
+
+    fn bounds(&self, lane: usize) -> FrameBox {
+        let [x, y, z] = [0, 2, 4].map(|k| [self.planes[k][lane], self.planes[k + 1][lane]]);
+        FrameBox { min: [x[0], y[0], z[0]].into(), max: [x[1], y[1], z[1]].into() }
+    }
+}
+
+/// A node's index; or a leaf: bit 31, whether it has spheres: bit 30, its primitives less one: bits 27 to
+/// 29, and where its words begin, in units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Child(u32);
+
+impl Child {
+    fn node(index: usize) -> Self {
+        Self(index as u32)
+    }
+
+    /// # Panics
+    /// If the words are too many: 2 GiB of them, some 50 million triangles.
+    fn leaf(offset: usize, count: usize, spheres: bool) -> Self {
+        let unit = (offset / UNIT) as u32;
+        assert!(offset / UNIT < 1 << 27, "the leaves of `wide` take no more than 2 GiB");
+        Self(1 << 31 | u32::from(spheres) << 30 | (count as u32 - 1) << 27 | unit)
+    }
+
+    #[inline(always)]
+    fn is_leaf(self) -> bool {
+        self.0 >> 31 != 0
+    }
+
+    #[inline(always)]
+    fn has_spheres(self) -> bool {
+        self.0 >> 30 & 1 != 0
+    }
+
+    #[inline(always)]
+    fn count(self) -> usize {
+        (self.0 >> 27 & 7) as usize + 1
+    }
+
+    #[inline(always)]
+    fn offset(self) -> usize {
+        (self.0 & ((1 << 27) - 1)) as usize * UNIT
+    }
+}
+
+impl<'s> Wide<'s> {
+    /// Builds the tree over all primitives of the scene.
+    pub fn build(scene: &'s Scene) -> Self {
+        Self::with_kernel(scene, Kernel::best())
+    }
+
+    /// The same without the processor's vectors: what other processors have.
+    pub fn scalar(scene: &'s Scene) -> Self {
+        Self::with_kernel(scene, Kernel::Scalar(Scalar))
+    }
+
+    fn with_kernel(scene: &'s Scene, kernel: Kernel) -> Self {
+        let tree = BinaryTree::of_single_primitives(scene);
+        let collapse::Collapsed { nodes, leaves } = collapse::collapse(&tree);
+        Self { scene, frame: tree.frame, nodes, leaves, kernel }
+    }
+
+    /// Bytes held by the index, without the scene it borrows.
+    pub fn memory(&self) -> usize {
+        size_of_val(self.nodes.as_slice()) + size_of_val(self.leaves.as_slice())
+    }
+
+    /// Checks that every box contains what is below it and that every primitive is in one leaf.
+    pub fn validate(&self) -> Result<(), String> {
+        let mut seen = Seen::new(self.scene);
+        let mut reached = 0;
+        let mut pending = if self.nodes.is_empty() { Vec::new() } else { vec![(0, 0)] };
+        while let Some((index, depth)) = pending.pop() {
+            reached += 1;
+            if reached > self.nodes.len() {
+                return Err("a node is below itself".into());
+            }
+            if depth >= walk::MOST_LEVELS {
+                return Err(format!("node {index} is {depth} levels deep"));
+            }
+            let node = &self.nodes[index];
+            for (lane, &child) in node.children.iter().enumerate() {
+                let bounds = node.bounds(lane);
+                if bounds == FrameBox::EMPTY {
+                    continue;
+                }
+                if child.is_leaf() {
+                    let primitives: Vec<PrimitiveId> = self.primitives(child).collect();
+                    seen.leaf(&self.frame, bounds, &primitives)?;
+                    continue;
+                }
+                let child = child.0 as usize;
+                let below =
+                    self.nodes.get(child).ok_or_else(|| format!("there is no node {child}"))?;
+                // An empty lane is in every box.
+                if !(0..WIDTH).all(|lane| bounds.contains(below.bounds(lane))) {
+                    return Err(format!("node {child} sticks out of node {index}"));
+                }
+                pending.push((child, depth + 1));
+            }
+        }
+        if reached < self.nodes.len() {
+            return Err(format!("{reached} of {} nodes are reached", self.nodes.len()));
+        }
+        seen.all()
+    }
+
+    /// The primitives of a leaf.
+    #[inline(always)]
+    fn primitives(&self, leaf: Child) -> impl Iterator<Item = PrimitiveId> {
+        let before = if leaf.has_spheres() { 0 } else { 1 + 9 * leaf.count() };
+        let ids = &self.leaves[leaf.offset() + before..][..leaf.count()];
+        ids.iter().map(|id| PrimitiveId(id.to_bits()))
+    }
+
+    #[inline(always)]
+    fn closest<O: Observer>(&self, ray: &Ray, range: Interval, observer: &mut O) -> Option<Hit> {
+        match self.kernel {
+            #[cfg(target_arch = "x86_64")]
+            Kernel::Avx2(avx2) => avx2.call(
+                #[inline(always)]
+                |lanes| walk::closest(lanes, self, ray, range, observer),
+            ),
+            Kernel::Scalar(lanes) => walk::closest(lanes, self, ray, range, observer),
+        }
+    }
+
+    #[inline(always)]
+    fn any<O: Observer>(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        observer: &mut O,
+    ) -> Option<PrimitiveId> {
+        match self.kernel {
+            #[cfg(target_arch = "x86_64")]
+            Kernel::Avx2(avx2) => avx2.call(
+                #[inline(always)]
+                |lanes| walk::any(lanes, self, ray, range, observer),
+            ),
+            Kernel::Scalar(lanes) => walk::any(lanes, self, ray, range, observer),
+        }
+    }
+}
+
+impl Intersector for Wide<'_> {
+    fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
+        self.closest(ray, range, &mut ())
+    }
+
+    fn occluded(&self, ray: &Ray, range: Interval) -> bool {
+        self.any(ray, range, &mut ()).is_some()
+    }
+}
+
+impl Observable for Wide<'_> {
+    fn watch(
+        &self,
+        ray: &Ray,
+        range: Interval,
+        any: bool,
+        mut observer: &mut dyn Observer,
+    ) -> Option<Hit> {
+        if !any {
+            return self.closest(ray, range, &mut observer);
+        }
+        let mut probe = Probe::new(self.scene, ray, range);
+        probe.test(self.any(ray, range, &mut observer)?);
+        probe.best()
+    }
+}

@@ -1,0 +1,436 @@
+//! The walk of one ray.
+
+use std::mem::MaybeUninit;
+
+use lancer_core::geometry::{Interval, Ray};
+use lancer_core::intersector::{Hit, Observer, Probe};
+use lancer_core::scene::PrimitiveId;
+
+use super::collapse::WIDTH;
+use super::lanes::Lanes;
+use super::{Child, Node, Wide};
+use crate::four_boxes::FourSlabs;
+
+/// Levels of a tree at most: no binary tree that is collapsed has more.
+pub(super) const MOST_LEVELS: usize = 97;
+/// Candidates for the answer that are kept until the end of the walk.
+const CANDIDATES: usize = 24;
+
+/// A ray in the scene's frame, broadcast to all lanes.
+struct WideRay<L: Lanes> {
+    lanes: L,
+    slabs: FourSlabs,
+    /// Which of a node's rows of planes a ray meets first on each axis, and last.
+    near: [usize; 3],
+    far: [usize; 3],
+    inverse: [L::F; 3],
+    near_offset: [L::F; 3],
+    far_offset: [L::F; 3],
+    origin: [L::F; 3],
+    direction: [L::F; 3],
+    /// 256 u D δ, 64 u δ and 64 u D of the bounds.
+    edge_bound: f32,
+    det_bound: f32,
+    t_bound: f32,
+    /// A hit must be this far away to be certain.
+    min: f32,
+}
+
+impl<L: Lanes> WideRay<L> {
+    #[inline(always)]
+    fn new(lanes: L, wide: &Wide, ray: &Ray, range: Interval) -> Self {
+        const U: f32 = 0.5 * f32::EPSILON;
+        let slabs = FourSlabs::new(ray, &wide.frame);
+        let all = |v: glam::Vec3A| v.to_array().map(|x| lanes.splat(x));
+        let reach = 1.0 + slabs.origin.abs().max_element() + slabs.moved / U;
+        let length = slabs.direction.abs().max_element();
+        // What was moved has lost the digits that tell a small t from its lower end.
+        let min = if slabs.moved > 0.0 { f32::INFINITY } else { slabs.parameter(range.min) };
+        Self {
+            lanes,
+            slabs,
+            near: [0, 1, 2].map(|axis| 2 * axis + usize::from(slabs.negative[axis])),
+            far: [0, 1, 2].map(|axis| 2 * axis + usize::from(!slabs.negative[axis])),
+            inverse: all(slabs.inverse),
+            near_offset: all(slabs.near_offset),
+            far_offset: all(slabs.far_offset),
+            origin: all(slabs.origin),
+            direction: all(slabs.direction),
+            edge_bound: 256.0 * U * reach * length,
+            det_bound: 64.0 * U * length,
+            t_bound: 64.0 * U * reach,
+            min,
+        }
+    }
+
+    /// Where the ray enters the eight boxes, and which of them before `max`, a bit per lane.
+    #[inline(always)]
+    fn enter(&self, node: &Node, max: f32) -> (L::F, u32) {
+        let lanes = self.lanes;
+        let at = |rows: [usize; 3], offset: &[L::F; 3], axis: usize| {
+            lanes.mul_add(lanes.load(&node.planes[rows[axis]]), self.inverse[axis], offset[axis])
+        };
+        let near = |axis| at(self.near, &self.near_offset, axis);
+        let far = |axis| at(self.far, &self.far_offset, axis);
+        let first = lanes.max(lanes.max(near(0), near(1)), lanes.max(near(2), lanes.splat(0.0)));
+        let last = lanes.min(lanes.min(far(0), far(1)), lanes.min(far(2), lanes.splat(max)));
+        (first, lanes.at_least(last, first))
+    }
+
+    /// Filters the triangles of a leaf: see [`Wide`] for the formulas and their bounds.
+    #[inline(always)]
+    fn filter(&self, words: &[f32], count: usize, max: f32) -> Filtered<L::F> {
+        let l = self.lanes;
+        let [ax, ay, az, ex, ey, ez, fx, fy, fz] = l.rows::<9>(&words[1..=9 * count], count);
+        let [ox, oy, oz] = self.origin;
+        let [dx, dy, dz] = self.direction;
+        let s = words[0];
+        let e = l.splat(self.edge_bound * s);
+        let e_det = self.det_bound * s * s;
+        let e_t = l.splat(self.t_bound * s * s);
+
+        let (cx, cy, cz) = (l.sub(ax, ox), l.sub(ay, oy), l.sub(az, oz));
+        let nx = l.mul_sub(ey, fz, l.mul(ez, fy));
+        let ny = l.mul_sub(ez, fx, l.mul(ex, fz));
+        let nz = l.mul_sub(ex, fy, l.mul(ey, fx));
+        let rx = l.mul_sub(cy, dz, l.mul(cz, dy));
+        let ry = l.mul_sub(cz, dx, l.mul(cx, dz));
+        let rz = l.mul_sub(cx, dy, l.mul(cy, dx));
+        let dot = |a: [L::F; 3], b: [L::F; 3]| {
+            l.mul_add(a[0], b[0], l.mul_add(a[1], b[1], l.mul(a[2], b[2])))
+        };
+        let det = dot([nx, ny, nz], [dx, dy, dz]);
+        let zero = l.splat(0.0);
+        let t = l.turn(dot([nx, ny, nz], [cx, cy, cz]), det);
+        let u = l.turn(dot([rx, ry, rz], [fx, fy, fz]), det);
+        let v = l.turn(l.sub(zero, dot([rx, ry, rz], [ex, ey, ez])), det);
+        let det = l.abs(det);
+        let w = l.sub(l.sub(det, u), v);
+
+        let inside = l.min(u, l.min(v, w));
+        let det_most = l.add(det, l.splat(e_det));
+        let kept = l.at_least(inside, l.sub(zero, e))
+            & l.at_least(t, l.sub(zero, e_t))
+            & l.at_least(l.mul_sub(l.splat(max), det_most, t), l.sub(zero, e_t))
+            & ((1 << count) - 1);
+        Filtered { kept, inside, e, t, e_t, det, det_most, e_det }
+    }
+
+    /// For the triangles that are kept: which hits are certain, and between which parameters they lie.
+    #[inline(always)]
+    fn certain(&self, filtered: &Filtered<L::F>) -> (u32, [f32; 8], [f32; 8]) {
+        let l = self.lanes;
+        let Filtered { kept, inside, e, t, e_t, det, det_most, e_det } = *filtered;
+        // The quotients round too.
+        let lowest = l.mul(l.div(l.sub(t, e_t), det_most), l.splat(1.0 - 4.0 * f32::EPSILON));
+        let det_least = l.sub(det, l.splat(e_det));
+        let highest = l.mul(l.div(l.add(t, e_t), det_least), l.splat(1.0 + 4.0 * f32::EPSILON));
+        let certain = kept
+            & l.above(inside, e)
+            & l.above(t, e_t)
+            & l.above(det_least, l.splat(e_det))
+            & l.above(lowest, l.splat(self.min));
+        (certain, l.store(lowest), l.store(highest))
+    }
+}
+
+/// The eight triangles of a leaf after the filter.
+struct Filtered<F> {
+    /// What `f64` might accept, a bit per lane.
+    kept: u32,
+    /// The least of U, V and W, and its bound.
+    inside: F,
+    e: F,
+    t: F,
+    e_t: F,
+    det: F,
+    det_most: F,
+    e_det: f32,
+}
+
+/// Nodes and leaves that are still to be visited, each with the parameter where the ray enters it: as that
+/// is at least 0, integers are in the order of the parameters.
+struct Stack {
+    entries: [MaybeUninit<u64>; MOST_LEVELS * (WIDTH - 1)],
+    length: usize,
+}
+
+impl Stack {
+    #[inline(always)]
+    fn new() -> Self {
+        Self { entries: [MaybeUninit::uninit(); MOST_LEVELS * (WIDTH - 1)], length: 0 }
+    }
+
+    #[inline(always)]
+    fn push(&mut self, entry: u64) {
+        self.entries[self.length] = MaybeUninit::new(entry);
+        self.length += 1;
+    }
+
+    #[inline(always)]
+    #[allow(unsafe_code)]
+    fn pop(&mut self) -> Option<u64> {
+        self.length = self.length.checked_sub(1)?;
+        // SAFETY: entries below the length have been pushed.
+        Some(unsafe { self.entries[self.length].assume_init() })
+    }
+
+    /// Pushes the lanes of a mask with at least two bits, far ones first, but for the nearest.
+    #[inline(always)]
+    fn push_but_nearest(&mut self, mut met: u32, near: &[f32; 8], children: &[Child; 8]) -> Child {
+        let mut take = || {
+            let lane = met.trailing_zeros() as usize % WIDTH;
+            met &= met - 1;
+            entry(near[lane], children[lane])
+        };
+        let (a, b) = (take(), take());
+        let (mut nearest, second) = (a.min(b), a.max(b));
+        self.push(second);
+        let mut among = 1;
+        while met != 0 {
+            let lane = met.trailing_zeros() as usize % WIDTH;
+            met &= met - 1;
+            let next = entry(near[lane], children[lane]);
+            let pushed = nearest.max(next);
+            nearest = nearest.min(next);
+            self.push(pushed);
+            self.sink(among);
+            among += 1;
+        }
+        child(nearest)
+    }
+
+    /// Brings the last entry to its place among the `among` before it, which are in falling order.
+    #[inline(always)]
+    #[allow(unsafe_code)]
+    fn sink(&mut self, among: usize) {
+        let last = self.length - 1;
+        for place in (last - among..last).rev() {
+            // SAFETY: entries below the length have been pushed.
+            let (before, here) = unsafe {
+                (self.entries[place].assume_init(), self.entries[place + 1].assume_init())
+            };
+            if before >= here {
+                break;
+            }
+            self.entries.swap(place, place + 1);
+        }
+    }
+}
+
+#[inline(always)]
+fn entry(near: f32, child: Child) -> u64 {
+    u64::from(near.to_bits()) << 32 | u64::from(child.0)
+}
+
+#[inline(always)]
+fn child(entry: u64) -> Child {
+    Child(entry as u32)
+}
+
+#[inline(always)]
+fn near(entry: u64) -> f32 {
+    f32::from_bits((entry >> 32) as u32)
+}
+
+/// The candidates for the closest hit, which `f64` decides on.
+struct Candidates<'s, 'r> {
+    probe: Probe<'s>,
+    ray: &'r FourSlabs,
+    list: [(PrimitiveId, f32); CANDIDATES],
+    length: usize,
+    /// Nothing beyond this parameter can be the closest hit.
+    max: f32,
+}
+
+impl Candidates<'_, '_> {
+    #[inline(always)]
+    fn add(&mut self, primitive: PrimitiveId, lowest: f32) {
+        if self.length == CANDIDATES {
+            self.decide();
+        }
+        self.list[self.length] = (primitive, lowest);
+        self.length += 1;
+    }
+
+    #[inline(always)]
+    fn test(&mut self, primitive: PrimitiveId) {
+        if self.probe.test(primitive) {
+            self.max = self.max.min(self.ray.parameter(self.probe.range().max));
+        }
+    }
+
+    /// Lets `f64` decide on the list. What came last is nearest more often than not.
+    #[inline(always)]
+    fn decide(&mut self) {
+        while self.length > 0 {
+            self.length -= 1;
+            let (primitive, lowest) = self.list[self.length];
+            if lowest <= self.max {
+                self.test(primitive);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+pub(super) fn closest<L: Lanes, O: Observer>(
+    lanes: L,
+    wide: &Wide,
+    ray: &Ray,
+    range: Interval,
+    observer: &mut O,
+) -> Option<Hit> {
+    if wide.nodes.is_empty() {
+        return None;
+    }
+    let wide_ray = WideRay::new(lanes, wide, ray, range);
+    let mut candidates = Candidates {
+        probe: Probe::new(wide.scene, ray, range),
+        ray: &wide_ray.slabs,
+        list: [(PrimitiveId(0), 0.0); CANDIDATES],
+        length: 0,
+        max: wide_ray.slabs.parameter(range.max),
+    };
+    let mut stack = Stack::new();
+    let mut next = Child::node(0);
+    loop {
+        if next.is_leaf() {
+            for primitive in wide.primitives(next) {
+                observer.primitive_test(primitive);
+            }
+            visit_leaf(wide, &wide_ray, next, &mut candidates);
+        } else {
+            (0..WIDTH).for_each(|_| observer.box_test());
+            let node = &wide.nodes[next.0 as usize];
+            let (near, met) = wide_ray.enter(node, candidates.max);
+            if met != 0 {
+                if met & (met - 1) == 0 {
+                    next = node.children[met.trailing_zeros() as usize % WIDTH];
+                } else {
+                    next = stack.push_but_nearest(met, &lanes.store(near), &node.children);
+                }
+                continue;
+            }
+        }
+        next = loop {
+            let Some(entry) = stack.pop() else {
+                candidates.decide();
+                return candidates.probe.best();
+            };
+            if near(entry) <= candidates.max {
+                break child(entry);
+            }
+        };
+    }
+}
+
+#[inline(always)]
+fn visit_leaf<L: Lanes>(wide: &Wide, ray: &WideRay<L>, leaf: Child, candidates: &mut Candidates) {
+    if leaf.has_spheres() {
+        wide.primitives(leaf).for_each(|primitive| candidates.test(primitive));
+        return;
+    }
+    let count = leaf.count();
+    let words = &wide.leaves[leaf.offset()..][..1 + 10 * count];
+    let filtered = ray.filter(words, count, candidates.max);
+    if filtered.kept == 0 {
+        return;
+    }
+    let (certain, lowest, highest) = ray.certain(&filtered);
+    let mut kept = filtered.kept;
+    while kept != 0 {
+        let lane = kept.trailing_zeros() as usize % WIDTH;
+        kept &= kept - 1;
+        candidates.add(PrimitiveId(words[1 + 9 * count + lane].to_bits()), lowest[lane]);
+        if certain >> lane & 1 != 0 {
+            candidates.max = candidates.max.min(highest[lane]);
+        }
+    }
+}
+
+#[inline(always)]
+pub(super) fn any<L: Lanes, O: Observer>(
+    lanes: L,
+    wide: &Wide,
+    ray: &Ray,
+    range: Interval,
+    observer: &mut O,
+) -> Option<PrimitiveId> {
+    if wide.nodes.is_empty() {
+        return None;
+    }
+    let wide_ray = WideRay::new(lanes, wide, ray, range);
+    let mut probe = Probe::new(wide.scene, ray, range);
+    let max = wide_ray.slabs.parameter(range.max);
+    // The parameter was rounded up.
+    let surely_before = max * (1.0 - 4.0 * f32::EPSILON);
+    let mut stack = Stack::new();
+    let mut next = Child::node(0);
+    loop {
+        if next.is_leaf() {
+            let found = in_the_way(wide, &wide_ray, next, max, surely_before, &mut probe, observer);
+            if found.is_some() {
+                return found;
+            }
+        } else {
+            (0..WIDTH).for_each(|_| observer.box_test());
+            let node = &wide.nodes[next.0 as usize];
+            let (_, mut met) = wide_ray.enter(node, max);
+            if met != 0 {
+                // The last one does not pass through the stack.
+                while met & (met - 1) != 0 {
+                    let lane = met.trailing_zeros() as usize % WIDTH;
+                    stack.push(entry(0.0, node.children[lane]));
+                    met &= met - 1;
+                }
+                next = node.children[met.trailing_zeros() as usize % WIDTH];
+                continue;
+            }
+        }
+        next = child(stack.pop()?);
+    }
+}
+
+/// A primitive of a leaf that the ray meets, if there is one.
+#[inline(always)]
+fn in_the_way<L: Lanes, O: Observer>(
+    wide: &Wide,
+    ray: &WideRay<L>,
+    leaf: Child,
+    max: f32,
+    surely_before: f32,
+    probe: &mut Probe,
+    observer: &mut O,
+) -> Option<PrimitiveId> {
+    for primitive in wide.primitives(leaf) {
+        observer.primitive_test(primitive);
+    }
+    if leaf.has_spheres() {
+        return wide.primitives(leaf).find(|&primitive| probe.test(primitive));
+    }
+    let count = leaf.count();
+    let words = &wide.leaves[leaf.offset()..][..1 + 10 * count];
+    let filtered = ray.filter(words, count, max);
+    if filtered.kept == 0 {
+        return None;
+    }
+    let id = |lane: usize| PrimitiveId(words[1 + 9 * count + lane].to_bits());
+    let (mut certain, _, highest) = ray.certain(&filtered);
+    while certain != 0 {
+        let lane = certain.trailing_zeros() as usize % WIDTH;
+        certain &= certain - 1;
+        if highest[lane] < surely_before {
+            return Some(id(lane));
+        }
+    }
+    let mut kept = filtered.kept;
+    while kept != 0 {
+        let lane = kept.trailing_zeros() as usize % WIDTH;
+        kept &= kept - 1;
+        if probe.test(id(lane)) {
+            return Some(id(lane));
+        }
+    }
+    None
+}
