@@ -288,3 +288,6 @@ impl Observable for Wide<'_> {
         probe.best()
     }
 }
+
+#[cfg(test)]
+mod tests;

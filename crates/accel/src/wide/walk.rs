@@ -13,13 +13,15 @@ use crate::four_boxes::FourSlabs;
 
 /// Levels of a tree at most: no binary tree that is collapsed has more.
 pub(super) const MOST_LEVELS: usize = 97;
+/// Entries of the stack at most: all children but one of a node on each level.
+const MOST_PENDING: usize = MOST_LEVELS * (WIDTH - 1);
 /// Candidates for the answer that are kept until the end of the walk.
 const CANDIDATES: usize = 24;
 
 /// A ray in the scene's frame, broadcast to all lanes.
-struct WideRay<L: Lanes> {
+pub(super) struct WideRay<L: Lanes> {
     lanes: L,
-    slabs: FourSlabs,
+    pub(super) slabs: FourSlabs,
     /// Which of a node's rows of planes a ray meets first on each axis, and last.
     near: [usize; 3],
     far: [usize; 3],
@@ -38,7 +40,7 @@ struct WideRay<L: Lanes> {
 
 impl<L: Lanes> WideRay<L> {
     #[inline(always)]
-    fn new(lanes: L, wide: &Wide, ray: &Ray, range: Interval) -> Self {
+    pub(super) fn new(lanes: L, wide: &Wide, ray: &Ray, range: Interval) -> Self {
         const U: f32 = 0.5 * f32::EPSILON;
         let slabs = FourSlabs::new(ray, &wide.frame);
         let all = |v: glam::Vec3A| v.to_array().map(|x| lanes.splat(x));
@@ -79,7 +81,7 @@ impl<L: Lanes> WideRay<L> {
 
     /// Filters the triangles of a leaf: see [`Wide`] for the formulas and their bounds.
     #[inline(always)]
-    fn filter(&self, words: &[f32], count: usize, max: f32) -> Filtered<L::F> {
+    pub(super) fn filter(&self, words: &[f32], count: usize, max: f32) -> Filtered<L::F> {
         let l = self.lanes;
         let [ax, ay, az, ex, ey, ez, fx, fy, fz] = l.rows::<9>(&words[1..=9 * count], count);
         let [ox, oy, oz] = self.origin;
@@ -118,7 +120,7 @@ impl<L: Lanes> WideRay<L> {
 
     /// For the triangles that are kept: which hits are certain, and between which parameters they lie.
     #[inline(always)]
-    fn certain(&self, filtered: &Filtered<L::F>) -> (u32, [f32; 8], [f32; 8]) {
+    pub(super) fn certain(&self, filtered: &Filtered<L::F>) -> (u32, [f32; 8], [f32; 8]) {
         let l = self.lanes;
         let Filtered { kept, inside, e, t, e_t, det, det_most, e_det } = *filtered;
         // The quotients round too.
@@ -135,9 +137,9 @@ impl<L: Lanes> WideRay<L> {
 }
 
 /// The eight triangles of a leaf after the filter.
-struct Filtered<F> {
+pub(super) struct Filtered<F> {
     /// What `f64` might accept, a bit per lane.
-    kept: u32,
+    pub(super) kept: u32,
     /// The least of U, V and W, and its bound.
     inside: F,
     e: F,
@@ -148,17 +150,17 @@ struct Filtered<F> {
     e_det: f32,
 }
 
-/// Nodes and leaves that are still to be visited, each with the parameter where the ray enters it: as that
-/// is at least 0, integers are in the order of the parameters.
-struct Stack {
-    entries: [MaybeUninit<u64>; MOST_LEVELS * (WIDTH - 1)],
+/// At most `N` numbers, the last one first: a parameter that is at least 0 in the high bits, so that integers
+/// are in the order of parameters, and what is there in the low ones. Nothing is initialised in vain.
+struct Stack<const N: usize> {
+    entries: [MaybeUninit<u64>; N],
     length: usize,
 }
 
-impl Stack {
+impl<const N: usize> Stack<N> {
     #[inline(always)]
     fn new() -> Self {
-        Self { entries: [MaybeUninit::uninit(); MOST_LEVELS * (WIDTH - 1)], length: 0 }
+        Self { entries: [const { MaybeUninit::uninit() }; N], length: 0 }
     }
 
     #[inline(always)]
@@ -220,7 +222,13 @@ impl Stack {
 
 #[inline(always)]
 fn entry(near: f32, child: Child) -> u64 {
-    u64::from(near.to_bits()) << 32 | u64::from(child.0)
+    key(near, child.0)
+}
+
+/// What is at a parameter, as a number.
+#[inline(always)]
+fn key(parameter: f32, what: u32) -> u64 {
+    u64::from(parameter.to_bits()) << 32 | u64::from(what)
 }
 
 #[inline(always)]
@@ -237,8 +245,8 @@ fn near(entry: u64) -> f32 {
 struct Candidates<'s, 'r> {
     probe: Probe<'s>,
     ray: &'r FourSlabs,
-    list: [(PrimitiveId, f32); CANDIDATES],
-    length: usize,
+    /// Each with the lower end of where its hit may be.
+    list: Stack<CANDIDATES>,
     /// Nothing beyond this parameter can be the closest hit.
     max: f32,
 }
@@ -246,11 +254,10 @@ struct Candidates<'s, 'r> {
 impl Candidates<'_, '_> {
     #[inline(always)]
     fn add(&mut self, primitive: PrimitiveId, lowest: f32) {
-        if self.length == CANDIDATES {
+        if self.list.length == CANDIDATES {
             self.decide();
         }
-        self.list[self.length] = (primitive, lowest);
-        self.length += 1;
+        self.list.push(key(lowest.max(0.0), primitive.0));
     }
 
     #[inline(always)]
@@ -263,11 +270,9 @@ impl Candidates<'_, '_> {
     /// Lets `f64` decide on the list. What came last is nearest more often than not.
     #[inline(always)]
     fn decide(&mut self) {
-        while self.length > 0 {
-            self.length -= 1;
-            let (primitive, lowest) = self.list[self.length];
-            if lowest <= self.max {
-                self.test(primitive);
+        while let Some(candidate) = self.list.pop() {
+            if near(candidate) <= self.max {
+                self.test(PrimitiveId(candidate as u32));
             }
         }
     }
@@ -288,11 +293,10 @@ pub(super) fn closest<L: Lanes, O: Observer>(
     let mut candidates = Candidates {
         probe: Probe::new(wide.scene, ray, range),
         ray: &wide_ray.slabs,
-        list: [(PrimitiveId(0), 0.0); CANDIDATES],
-        length: 0,
+        list: Stack::new(),
         max: wide_ray.slabs.parameter(range.max),
     };
-    let mut stack = Stack::new();
+    let mut stack = Stack::<MOST_PENDING>::new();
     let mut next = Child::node(0);
     loop {
         if next.is_leaf() {
@@ -365,7 +369,7 @@ pub(super) fn any<L: Lanes, O: Observer>(
     let max = wide_ray.slabs.parameter(range.max);
     // The parameter was rounded up.
     let surely_before = max * (1.0 - 4.0 * f32::EPSILON);
-    let mut stack = Stack::new();
+    let mut stack = Stack::<MOST_PENDING>::new();
     let mut next = Child::node(0);
     loop {
         if next.is_leaf() {

@@ -1,0 +1,165 @@
+use glam::DVec3;
+use lancer_core::generate::icosphere;
+use lancer_core::intersector::TestCounts;
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::Rng;
+
+use super::lanes::Lanes;
+use super::walk::WideRay;
+use super::*;
+use crate::four_boxes::FourSlabs;
+use crate::hard_sets::{hard_sets, triangles};
+
+fn kernels() -> Vec<Kernel> {
+    let mut kernels = vec![Kernel::Scalar(Scalar)];
+    if !matches!(Kernel::best(), Kernel::Scalar(_)) {
+        kernels.push(Kernel::best());
+    }
+    kernels
+}
+
+#[test]
+fn hard_sets_are_built() {
+    for (name, scene) in &hard_sets(100_000) {
+        assert_eq!(Wide::build(scene).validate(), Ok(()), "{name}");
+    }
+}
+
+#[test]
+fn a_validation_finds_what_is_wrong() {
+    let scene = Scene::of_mesh(icosphere(3));
+    let broken = |harm: &dyn Fn(&mut Wide)| {
+        let mut wide = Wide::build(&scene);
+        assert_eq!(wide.validate(), Ok(()));
+        harm(&mut wide);
+        wide.validate().unwrap_err()
+    };
+    let leaf = |wide: &Wide| {
+        let node = wide.nodes.iter().position(|node| node.children[0].is_leaf()).unwrap();
+        (node, wide.nodes[node].children[0])
+    };
+    let small = broken(&|wide| {
+        let (node, _) = leaf(wide);
+        wide.nodes[node].planes[1][0] = wide.nodes[node].planes[0][0];
+    });
+    assert!(small.contains("sticks out"), "{small}");
+    let twice = broken(&|wide| {
+        let (_, leaf) = leaf(wide);
+        let ids = leaf.offset() + 1 + 9 * leaf.count();
+        wide.leaves[ids] = wide.leaves[ids + 1];
+    });
+    assert!(twice.ends_with("is in two leaves"), "{twice}");
+    let missing = broken(&|wide| {
+        let (node, _) = leaf(wide);
+        for planes in 0..6 {
+            wide.nodes[node].planes[planes][0] = Node::EMPTY.planes[planes][0];
+        }
+    });
+    assert!(missing.ends_with("is in no leaf"), "{missing}");
+}
+
+/// Leaves are shared, boxes are few: a whole mesh of n triangles takes fewer than n / 4 nodes, and 60
+/// bytes a triangle.
+#[test]
+fn a_tree_is_small() {
+    let scene = Scene::of_mesh(icosphere(5));
+    let wide = Wide::build(&scene);
+    let count = scene.mesh.triangles.len();
+    assert!(wide.nodes.len() < count / 4 && wide.memory() < 60 * count, "{}", wide.memory());
+}
+
+/// The proof in the documentation, tried: what `f64` meets the filter keeps; what is certain `f64` meets;
+/// and the parameter lies between the ends of its interval. Triangles of all sizes and shapes in the frame
+/// [−1, 1]³, rays aimed at corners, edges, the inside and just beside, from near and far.
+#[test]
+fn the_bounds_hold() {
+    let mut random = Pcg64::new(11, 3);
+    let mut number = move || f64::from(random.next_u32()) / f64::from(1 << 31) - 1.0;
+    let (mut met, mut certain, mut kept) = (0, 0, 0);
+    const RAYS: u32 = 60_000;
+    for k in 0..RAYS {
+        let mut vector = || DVec3::new(number(), number(), number());
+        let size = 2.0_f64.powi(-(k as i32 % 16));
+        let a = 0.9 * vector();
+        let (e, mut f) = (0.05 * size * vector(), 0.05 * size * vector());
+        if k % 3 == 0 {
+            // A sliver.
+            f = e * 0.5 + f * 1e-4;
+        }
+        let target = match k % 5 {
+            0 => a,
+            1 => a + e * 0.3,
+            2 => a + e * 0.3 + f * 0.3,
+            3 => a + (e + f) * (0.5 + 1e-7 * vector().x),
+            _ => a + vector() * size * 0.05,
+        };
+        let origin = match k % 4 {
+            0 => target + vector() * size,
+            1 => 3.0 * vector(),
+            2 => 2e3 * vector(),
+            _ => a + e * 0.2 + f * 0.2,
+        };
+        let toward = if k % 7 == 0 { target - origin + 1e-9 * vector() } else { target - origin };
+        let corner = |p: f64| [DVec3::splat(p); 3];
+        let scene = triangles([[a, a + e, a + f], corner(-1.0), corner(1.0)]);
+        let ray = Ray::new(origin, toward);
+        let mut probe = Probe::new(&scene, &ray, Interval::POSITIVE);
+        let answer = probe.test(PrimitiveId(0)).then(|| probe.best().unwrap().t);
+        met += u32::from(answer.is_some());
+        for kernel in kernels() {
+            let wide = Wide::with_kernel(&scene, kernel);
+            let filtered = match kernel {
+                #[cfg(target_arch = "x86_64")]
+                Kernel::Avx2(lanes) => filter_first(lanes, &wide, &ray),
+                Kernel::Scalar(lanes) => filter_first(lanes, &wide, &ray),
+            };
+            assert!(answer.is_none() || filtered.is_some(), "lost {k}: {ray:?} {a} {e} {f}");
+            let Some((slabs, is_certain, lowest, highest)) = filtered else { continue };
+            kept += 1;
+            certain += u32::from(is_certain);
+            if let Some(t) = answer.map(|t| slabs.parameter(t)) {
+                assert!(lowest <= t, "{k}: {lowest} {t} {highest}");
+                // The parameter was rounded up.
+                let least = t * (1.0 - 2.0 * f32::EPSILON);
+                assert!(!is_certain || least <= highest, "{k}: {lowest} {t} {highest}");
+            }
+            assert!(!is_certain || answer.is_some(), "not certain at all {k}: {ray:?} {a} {e} {f}");
+        }
+    }
+    assert!(met > RAYS / 8 && certain > RAYS / 64 && kept > certain, "{met} {certain} {kept}");
+}
+
+/// What the filter says of primitive 0, if it keeps it. The frame is the world.
+fn filter_first<L: Lanes>(lanes: L, wide: &Wide, ray: &Ray) -> Option<(FourSlabs, bool, f32, f32)> {
+    let wide_ray = WideRay::new(lanes, wide, ray, Interval::POSITIVE);
+    let leaves = wide.nodes.iter().flat_map(|node| {
+        node.children.iter().zip(0..).map(move |(child, lane)| (node, *child, lane))
+    });
+    let mut leaves = leaves
+        .filter(|(node, child, lane)| child.is_leaf() && node.bounds(*lane) != FrameBox::EMPTY);
+    let (leaf, lane) = leaves.find_map(|(_, leaf, _)| {
+        let lane = wide.primitives(leaf).position(|id| id == PrimitiveId(0))?;
+        Some((leaf, lane))
+    })?;
+    let words = &wide.leaves[leaf.offset()..][..1 + 10 * leaf.count()];
+    let filtered = wide_ray.filter(words, leaf.count(), f32::INFINITY);
+    if filtered.kept >> lane & 1 == 0 {
+        return None;
+    }
+    let (certain, lowest, highest) = wide_ray.certain(&filtered);
+    Some((wide_ray.slabs, certain >> lane & 1 != 0, lowest[lane], highest[lane]))
+}
+
+/// Of a plane's two halves only one is met, and `f64` is asked once: the certain hit is the answer.
+#[test]
+fn a_ray_in_the_open_asks_little() {
+    let scene = Scene::of_mesh(icosphere(4));
+    for kernel in kernels() {
+        let wide = Wide::with_kernel(&scene, kernel);
+        let mut counts = TestCounts::default();
+        let ray = Ray::new(DVec3::new(0.1, 0.2, 3.0), DVec3::NEG_Z);
+        assert!(wide.watch(&ray, Interval::POSITIVE, false, &mut counts).is_some());
+        // Four levels of eight boxes, a leaf or two.
+        assert!(counts.boxes <= 8 * 8 && counts.primitives <= 24, "{counts:?}");
+    }
+}
