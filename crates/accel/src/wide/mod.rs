@@ -68,7 +68,8 @@ use lanes::avx2::Avx2;
 /// so with e = 256 u D δ s, e_Δ = 64 u s² δ and e_T = 64 u s² D whatever has U, V, W ≥ 0 is kept by
 /// U, V, W ≥ −e, and U, V, W > e, T > e_T, |Δ| > 2 e_Δ imply a true hit. The slack beyond first order, and the noise of
 /// the `f64` test (2⁻²⁹ of this in U, V, W; its own bound on t is below 60 · 2⁻⁵³ D² s / Δ) are covered
-/// because s is at least 2⁻²⁰. An origin that was moved close to the scene adds its rounding to D.
+/// because s is at least 2⁻²⁰. An origin beyond 4 is moved close to the scene, which adds its rounding to D;
+/// from beyond 16 no hit is called certain: at |Δ| = 2 e_Δ and s = 2⁻²⁰ the bound on t from there comes near t.
 pub struct Wide<'s> {
     scene: &'s Scene,
     frame: Frame,

@@ -93,10 +93,12 @@ fn the_bounds_hold() {
             3 => a + (e + f) * (0.5 + 1e-7 * vector().x),
             _ => a + vector() * size * 0.05,
         };
-        let origin = match k % 4 {
+        let origin = match k % 6 {
             0 => target + vector() * size,
             1 => 3.0 * vector(),
             2 => 2e3 * vector(),
+            4 => 12.0 * vector(),
+            5 => 15.9 * vector().normalize(),
             _ => a + e * 0.2 + f * 0.2,
         };
         let toward = if k % 7 == 0 { target - origin + 1e-9 * vector() } else { target - origin };

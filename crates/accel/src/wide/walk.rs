@@ -18,6 +18,9 @@ const MOST_PENDING: usize = MOST_LEVELS * (WIDTH - 1);
 /// Candidates for the answer that are kept until the end of the walk.
 const CANDIDATES: usize = 24;
 
+/// The farthest origin from which hits are called certain, in units of the scene's frame.
+const FARTHEST: f32 = 16.0;
+
 /// A ray in the scene's frame, broadcast to all lanes.
 pub(super) struct WideRay<L: Lanes> {
     lanes: L,
@@ -46,8 +49,9 @@ impl<L: Lanes> WideRay<L> {
         let all = |v: glam::Vec3A| v.to_array().map(|x| lanes.splat(x));
         let reach = 1.0 + slabs.origin.abs().max_element() + slabs.moved / U;
         let length = slabs.direction.abs().max_element();
-        // What was moved has lost the digits that tell a small t from its lower end.
-        let min = if slabs.moved > 0.0 { f32::INFINITY } else { slabs.parameter(range.min) };
+        // From farther away the parameter's own bound in `f64` might exceed what is certain here.
+        let is_far = slabs.moved > 8.0 * f64::EPSILON as f32 * FARTHEST;
+        let min = if is_far { f32::INFINITY } else { slabs.parameter(range.min) };
         Self {
             lanes,
             slabs,
