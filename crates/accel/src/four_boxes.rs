@@ -130,7 +130,7 @@ impl Frame {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FourSlabs {
     /// Per axis: the ray travels towards smaller coordinates.
-    pub(crate) negative: [bool; 3],
+    negative: [bool; 3],
     pub(crate) inverse: Vec3A,
     pub(crate) near_offset: Vec3A,
     pub(crate) far_offset: Vec3A,

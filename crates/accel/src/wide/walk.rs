@@ -52,11 +52,13 @@ impl<L: Lanes> WideRay<L> {
         // From farther away the parameter's own bound in `f64` might exceed what is certain here.
         let is_far = slabs.moved > 8.0 * f64::EPSILON as f32 * FARTHEST;
         let min = if is_far { f32::INFINITY } else { slabs.parameter(range.min) };
+        let negative = slabs.inverse.is_negative_bitmask() as usize;
+        let near = [negative & 1, 2 | negative >> 1 & 1, 4 | negative >> 2 & 1];
         Self {
             lanes,
             slabs,
-            near: [0, 1, 2].map(|axis| 2 * axis + usize::from(slabs.negative[axis])),
-            far: [0, 1, 2].map(|axis| 2 * axis + usize::from(!slabs.negative[axis])),
+            near,
+            far: near.map(|row| row ^ 1),
             inverse: all(slabs.inverse),
             near_offset: all(slabs.near_offset),
             far_offset: all(slabs.far_offset),
