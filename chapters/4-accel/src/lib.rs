@@ -5,3 +5,4 @@ pub mod figures;
 pub mod rays;
 pub mod scenes;
 pub mod structures;
+pub mod volumes;
