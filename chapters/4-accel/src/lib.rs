@@ -4,4 +4,5 @@
 pub mod figures;
 pub mod rays;
 pub mod scenes;
+pub mod step;
 pub mod structures;
