@@ -105,7 +105,7 @@ pub fn walk(request: &Request<'_>) -> Walk {
             ("box met, cell visited", draw::met(), false),
             ("box missed", MUTED, true),
             ("primitive met", draw::hit(), false),
-            ("missed", MUTED, false),
+            ("primitive missed", MUTED, false),
         ],
         picture: marked_picture(scene, &Whitted::new(world, Settings::default()), size, [x, y]),
         calls: answers.iter().fold(Tree::new("ray", INK), |tree, answer| {
@@ -154,7 +154,7 @@ impl Walker<'_> {
         let ends = step(&format!("ends: {}", self.reason(hit, counts)))
             .line(format!("answer  {}", self.named_hit(hit)))
             .line(format!(
-                "work    {} boxes, {} cells, {} primitives",
+                "work    boxes {}, cells {}, primitives {}",
                 counts.boxes, counts.cells, counts.primitives
             ));
         self.steps.push(ends.returns(same));
@@ -216,13 +216,12 @@ impl Walker<'_> {
 
     /// Why a search ends.
     fn reason(&self, hit: Option<Hit>, counts: TestCounts) -> String {
+        if self.scene.primitives().len() == 0 {
+            return "there is nothing in the scene".to_owned();
+        }
         let left = match counts {
             TestCounts { boxes: 0, cells: 0, primitives: 0 } => {
-                return if self.scene.primitives().len() == 0 {
-                    "there is nothing in the scene".to_owned()
-                } else {
-                    "the ray misses the box around the scene".to_owned()
-                };
+                return "the ray misses the box around the scene".to_owned();
             }
             TestCounts { boxes: 0, cells: 0, .. } => return "every primitive is tested".to_owned(),
             TestCounts { cells: 0, .. } => "box",
@@ -310,7 +309,11 @@ impl Walker<'_> {
 }
 
 /// From where to where a box is.
-fn extent(Bounds3 { min, max }: Bounds3) -> String {
+fn extent(bounds: Bounds3) -> String {
+    let Bounds3 { min, max } = bounds;
+    if bounds.is_empty() {
+        return "empty".to_owned();
+    }
     format!("from {} to {}", min.shown(), max.shown())
 }
 
