@@ -249,10 +249,12 @@ impl Walker<'_> {
             .filter(|answer| answer.hit != self.expected)
             .map(|answer| answer.name)
             .collect();
-        let headline = if differ.is_empty() {
-            "the ray ends: the same hit from all, the same t to the last bit".to_owned()
-        } else {
-            format!("the ray ends: NOT the hit of linear from {}", differ.join(", "))
+        let headline = match (differ.is_empty(), self.expected) {
+            (true, Some(_)) => {
+                "the ray ends: the same hit from all, the same t to the last bit".into()
+            }
+            (true, None) => "the ray ends: it meets nothing, as all agree".into(),
+            (false, _) => format!("the ray ends: NOT the hit of linear from {}", differ.join(", ")),
         };
         let row = |cells: [String; 6]| {
             let [name, boxes, cells, primitives, bytes, hit] = cells;
