@@ -413,7 +413,13 @@ fn steps_that_cannot_be_walked_are_refused() {
     let line = |case: &[&'static str]| {
         [&["step"], case, &["--scene=room", "--size=8x8", "--out=new.html"]].concat()
     };
-    assert_snapshot!(refusals(&folder, accel.map(line)), @"");
+    assert_snapshot!(refusals(&folder, accel.map(line)), @r"
+    error: --pixel 8,0 lies outside of the picture of 8x8: columns are 0 to 7, rows 0 to 7
+    error: --pixel 0,8 lies outside of the picture of 8x8: columns are 0 to 7, rows 0 to 7
+    error: unknown index `dk`; known: kd, bvh, bsp, grid, linear, octree, obvhs-bvh2, obvhs-cwbvh
+    error: unknown index ``; known: kd, bvh, bsp, grid, linear, octree, obvhs-bvh2, obvhs-cwbvh
+    error: --index: whitted's walk is the same with every index; leave it out
+    ");
 }
 
 #[test]
