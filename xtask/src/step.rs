@@ -31,8 +31,8 @@ const MOST_STEPS: usize = 5000;
   cargo xtask step whitted --scene whitted --pixel 246,157
   cargo xtask step whitted --scene room --pixel 200,300 --depth 2
   cargo xtask step whitted --scene whitted --pixel 246,157 --out step.html   a page with a slider
-  cargo xtask step accel --scene town:2000 --pixel 256,300 --out step.html
-  cargo xtask step accel --scene stadium --pixel 256,256 --index grid")]
+  cargo xtask step accel --scene stadium:20000 --pixel 256,256 --out step.html
+  cargo xtask step accel --scene town:2000 --pixel 256,300 --index kd")]
 pub struct Args {
     /// whitted or accel
     algorithm: String,

@@ -75,7 +75,7 @@ pub fn visited(view: View, bounds: Bounds3) -> impl Fn(&mut Pen<'_>) {
     move |pen| frame(view, pen, bounds, Stroke::new(met(), 1.6))
 }
 
-/// Fills a box or cell, and writes its number into it.
+/// Fills a box or cell, and writes its number.
 pub fn pointed_out(view: View, bounds: Bounds3, number: u64) -> impl Fn(&mut Pen<'_>) {
     move |pen| {
         let Some([low, high]) = rectangle(view, bounds) else { return };
@@ -86,9 +86,16 @@ pub fn pointed_out(view: View, bounds: Bounds3, number: u64) -> impl Fn(&mut Pen
         }
         let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
         pen.polygon(&corners, Style::fill(met().with_alpha(36)));
-        let middle = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];
+        let middle = 0.5 * (low[0] + high[0]);
+        let height = high[1] - low[1];
+        // The number would hide a low box: it stands on top of that.
+        let (at, offset) = if height * pen.scale() < 3.0 * LABEL {
+            ([middle, high[1]], [0.0, 0.8 * LABEL])
+        } else {
+            ([middle, low[1] + 0.5 * height], [0.0, 0.0])
+        };
         let text = Text::new(number.to_string(), LABEL).bold().color(met().for_text());
-        pen.label(middle, [0.0, 0.0], text);
+        pen.label(at, offset, text);
     }
 }
 

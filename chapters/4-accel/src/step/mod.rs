@@ -101,7 +101,6 @@ pub fn walk(request: &Request<'_>) -> Walk {
             }),
         },
         legend: vec![
-            ("ray", INK, false),
             ("box met, cell visited", draw::met(), false),
             ("box missed", MUTED, true),
             ("primitive met", draw::hit(), false),
