@@ -1,12 +1,12 @@
 //! The drawings beside a walk: boxes, cells and primitives, seen from one side.
 
-use chapter_1::step::view::View;
+use chapter_1::step::view::{Side, View};
 use glam::DVec3;
-use lancer_core::geometry::{Bounds3, Ray};
+use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
 use lancer_core::intersector::Hit;
 use lancer_core::scene::{PrimitiveId, Scene};
 use lancer_figure::{
-    Color, FAINT, INK, LABEL, MUTED, Pen, Point, Stroke, Style, Text, category_color,
+    Backdrop, Color, FAINT, INK, LABEL, MUTED, Pen, Point, Stroke, Style, Text, category_color,
 };
 
 /// The most vertices of a mesh that are drawn as dots.
@@ -22,6 +22,38 @@ pub fn met() -> Color {
 /// The colour of primitives that are hit.
 pub fn hit() -> Color {
     category_color(3)
+}
+
+/// A scene is not shown as a whole if it is this many times as large as the ray's way to its hit is long.
+const LARGE: f64 = 50.0;
+
+/// The view of a ray's way through a scene, from the side from which it takes up more room: all of the scene,
+/// and the eye too if the ray passes it by; of a large scene only the way.
+pub fn view(scene: &Scene, ray: &Ray, answer: Option<Hit>) -> View {
+    let bounds = scene.bounds();
+    let Bounds3 { min, max } = bounds;
+    let eye = ray.origin;
+    let end = answer.map_or(scene.camera.look_at, |hit| ray.at(hit.t));
+    let mut ends = vec![end];
+    if bounds.is_empty() || (max - min).length() > LARGE * (end - eye).length() {
+        ends.push(eye);
+    } else {
+        ends.extend([min, max]);
+        if Slabs::new(ray).cross(min, max, Interval::POSITIVE).is_none() {
+            ends.push(eye);
+        }
+    }
+    let shown = Bounds3::of_points(ends);
+    let shown = shown.grown(0.08 * (shown.max - shown.min).length());
+    let area = |side: Side| {
+        let [width, height] = side.flat(shown.max - shown.min);
+        (width * height).abs()
+    };
+    let side = if area(Side::Right) > area(Side::Above) { Side::Right } else { Side::Above };
+    let [a, b] = [shown.min, shown.max].map(|corner| side.flat(corner));
+    let [low, high] =
+        Backdrop::frame([a[0].min(b[0]), a[1].min(b[1])], [a[0].max(b[0]), a[1].max(b[1])]);
+    View { side, low, high }
 }
 
 /// Draws a ray up to its hit, over the vertices in sight.
@@ -133,6 +165,35 @@ pub fn primitives(
         }
         for &(center, radius) in &discs {
             pen.circle(center, radius, Style::outline(color, 2.0));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use lancer_core::image::ImageSize;
+    use lancer_core::intersector::{Intersector, LinearScan};
+
+    use super::*;
+    use crate::scenes::family;
+
+    /// The hit is in sight; with it the whole scene, or the eye where the scene is a thousand times as large.
+    #[test]
+    fn the_view_shows_the_rays_way() {
+        for (name, is_large) in [("town", false), ("scan", false), ("stadium", true)] {
+            let scene = family(name).scene(1000);
+            let ray = scene.camera.primary_rays(ImageSize::new(2, 2)).through(1.0, 1.0);
+            let hit = LinearScan::new(&scene).closest_hit(&ray, Interval::POSITIVE);
+            let view = view(&scene, &ray, hit);
+            let sees = |p: DVec3| {
+                let p = view.side.flat(p);
+                view.rect().clip(p, p).is_some()
+            };
+            let Bounds3 { min, max } = scene.bounds();
+            assert!(sees(ray.at(hit.unwrap().t)), "{name}");
+            assert_eq!(sees(min) && sees(max), !is_large, "{name}");
+            assert!(!is_large || sees(ray.origin), "{name}");
+            assert!(name != "town" || view.side == Side::Above, "a flat scene is seen from above");
         }
     }
 }

@@ -18,7 +18,7 @@ use lancer_core::scene::{PrimitiveId, Scene};
 use lancer_core::world::World;
 use lancer_exercise::Shown;
 use lancer_figure::{Backdrop, INK, MUTED, Step, Tree, Walk, category_color, method_color};
-use lancer_whitted::{RayTree, Settings, Whitted};
+use lancer_whitted::{Settings, Whitted};
 
 use crate::structures::Structure;
 use record::{Event, Kind, Recorder};
@@ -60,10 +60,7 @@ pub fn walk(request: &Request<'_>) -> Walk {
 
     let index = Bvh::build(scene);
     let world = World { scene, index: &index };
-    let mut first_call = RayTree::default();
-    let straight = Settings { max_depth: 0, ..Settings::default() };
-    Whitted::new(world, straight).trace(&ray, &mut first_call);
-    let view = View::of_rays(scene, &first_call);
+    let view = draw::view(scene, &ray, expected);
 
     let mut walker = Walker { scene, ray, view, expected, steps: Vec::new() };
     walker.begin();
