@@ -1,9 +1,10 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
-use chapter_1::step::Request;
+use chapter_4::structures::STRUCTURES;
 use lancer_accel::ObvhsBvh2;
 use lancer_core::image::{ImageSize, check_writable, write_atomically};
+use lancer_core::scene::load::Loaded;
 use lancer_figure::Walk;
 use lancer_whitted::Settings;
 
@@ -11,9 +12,9 @@ use crate::arguments::whole;
 use crate::names::named;
 use crate::scene;
 
-type Algorithm = fn(&Request<'_>) -> Walk;
+type Algorithm = fn(&Args, &Loaded) -> Result<Walk>;
 
-const ALGORITHMS: [(&str, Algorithm); 1] = [("whitted", chapter_1::step::walk)];
+const ALGORITHMS: [(&str, Algorithm); 2] = [("whitted", whitted), ("accel", accel)];
 
 /// The most steps of a page: its drawing has all of them.
 const MOST_STEPS: usize = 5000;
@@ -22,13 +23,18 @@ const MOST_STEPS: usize = 5000;
 ///
 /// whitted is the slides' algorithm LR: each call with its ray, what it meets, the terms of the local model
 /// lamp by lamp, the rays that it spawns, and the sum that comes back up.
+///
+/// accel is the search for what the pixel's ray meets, through one index after the other: each box and cell
+/// on its way, each primitive that is tested, and a table of what all of them did.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   cargo xtask step whitted --scene whitted --pixel 246,157
   cargo xtask step whitted --scene room --pixel 200,300 --depth 2
-  cargo xtask step whitted --scene whitted --pixel 246,157 --out step.html   a page with a slider")]
+  cargo xtask step whitted --scene whitted --pixel 246,157 --out step.html   a page with a slider
+  cargo xtask step accel --scene stadium:20000 --pixel 256,256 --out step.html
+  cargo xtask step accel --scene town:2000 --pixel 256,300 --index kd")]
 pub struct Args {
-    /// whitted
+    /// whitted or accel
     algorithm: String,
     /// A .toml or .obj file, or a scene of the course
     #[arg(long)]
@@ -39,11 +45,14 @@ pub struct Args {
     /// Pixels of the whole picture across and down
     #[arg(long, default_value = "512x512", value_name = "WxH", allow_hyphen_values = true)]
     size: ImageSize,
-    /// Largest number of bounces between the eye and a surface
+    /// Largest number of bounces between the eye and a surface (whitted)
     #[arg(long, default_value_t = 5, value_parser = whole::<u32>(0, 16), allow_negative_numbers = true)]
     depth: u32,
+    /// Only this index: linear, bvh, obvhs-bvh2, obvhs-cwbvh, grid, octree, kd or bsp (accel)
+    #[arg(long)]
+    index: Option<String>,
     /// Writes a page instead of the text: a slider over the steps, with the rays in a drawing of the scene
-    /// beside their tree
+    /// beside the tree of the calls
     #[arg(long, value_name = "FILE.html")]
     out: Option<PathBuf>,
 }
@@ -71,29 +80,48 @@ pub fn run(args: &Args) -> Result<()> {
     for warning in &loaded.warnings {
         eprintln!("warning: {warning}");
     }
-    let index = ObvhsBvh2::build(&loaded.scene);
-    let walk = algorithm(&Request {
-        name: &args.scene,
-        loaded: &loaded,
-        index: &index,
-        size,
-        pixel: args.pixel,
-        settings: Settings { max_depth: args.depth, ..Settings::default() },
-    });
+    let walk = algorithm(args, &loaded)?;
     match &args.out {
         None => say!("{}", walk.to_text().trim_end()),
         Some(out) => {
             let count = walk.steps.len();
             ensure!(
                 count <= MOST_STEPS,
-                "--out: {count} steps are too many for a page; take a --depth below {}",
-                args.depth
+                "--out: {count} steps are too many for a page; take a smaller --depth, or one --index"
             );
             write_atomically(out, walk.to_html().as_bytes())?;
             say!("page    {}   {count} steps", out.display());
         }
     }
     Ok(())
+}
+
+fn whitted(args: &Args, loaded: &Loaded) -> Result<Walk> {
+    ensure!(
+        args.index.is_none(),
+        "--index: whitted's walk is the same with every index; leave it out"
+    );
+    let index = ObvhsBvh2::build(&loaded.scene);
+    Ok(chapter_1::step::walk(&chapter_1::step::Request {
+        name: &args.scene,
+        loaded,
+        index: &index,
+        size: args.size,
+        pixel: args.pixel,
+        settings: Settings { max_depth: args.depth, ..Settings::default() },
+    }))
+}
+
+fn accel(args: &Args, loaded: &Loaded) -> Result<Walk> {
+    let known = STRUCTURES.map(|structure| (structure.name, structure));
+    let one = args.index.as_ref().map(|name| named("index", name, &known)).transpose()?;
+    Ok(chapter_4::step::walk(&chapter_4::step::Request {
+        name: &args.scene,
+        loaded,
+        size: args.size,
+        pixel: args.pixel,
+        structures: one.as_ref().map_or(&STRUCTURES, std::slice::from_ref),
+    }))
 }
 
 /// Refuses what cannot be written as a page, before the work.

@@ -402,7 +402,41 @@ fn steps_that_cannot_be_walked_are_refused() {
     error: --out: cannot write `folder.html`: it is a folder; name a file in it
     ");
     let unknown = ["step", "witted", "--scene=whitted", "--pixel=1,1"];
-    assert_snapshot!(refusal(&folder, &unknown), @"error: unknown algorithm `witted`; known: whitted");
+    assert_snapshot!(refusal(&folder, &unknown), @"error: unknown algorithm `witted`; known: whitted, accel");
+    let accel: [&[&str]; 5] = [
+        &["accel", "--pixel=8,0"],
+        &["accel", "--pixel=0,8", "--index=kd"],
+        &["accel", "--pixel=1,1", "--index=dk"],
+        &["accel", "--pixel=1,1", "--index="],
+        &["whitted", "--pixel=1,1", "--index=kd"],
+    ];
+    let line = |case: &[&'static str]| {
+        [&["step"], case, &["--scene=room", "--size=8x8", "--out=new.html"]].concat()
+    };
+    assert_snapshot!(refusals(&folder, accel.map(line)), @r"
+    error: --pixel 8,0 lies outside of the picture of 8x8: columns are 0 to 7, rows 0 to 7
+    error: --pixel 0,8 lies outside of the picture of 8x8: columns are 0 to 7, rows 0 to 7
+    error: unknown index `dk`; known: kd, bvh, bsp, grid, linear, octree, obvhs-bvh2, obvhs-cwbvh
+    error: unknown index ``; known: kd, bvh, bsp, grid, linear, octree, obvhs-bvh2, obvhs-cwbvh
+    error: --index: whitted's walk is the same with every index; leave it out
+    ");
+}
+
+#[test]
+fn a_ray_walks_through_all_indexes_or_one() {
+    let folder = folder(&[]);
+    let line = ["step", "accel", "--scene=room", "--pixel=16,16", "--size=32x32"];
+    let all = text(&accepted(&folder, &line).stdout);
+    let one = text(&accepted(&folder, &[&line[..], &["--index=GRID"]].concat()).stdout);
+    let begins = |walk: &str| walk.matches(" bytes beside the scene").count();
+    assert_eq!((begins(&all), begins(&one)), (8, 1));
+    assert!(one.contains("grid begins") && one.contains("    linear  "), "{one}");
+    let page = |name: &str| {
+        let output = accepted(&folder, &[&line[..], &["--out", name]].concat());
+        assert!(text(&output.stdout).starts_with(&format!("page    {name}   ")));
+        text(&fs::read(folder.path().join(name)).unwrap())
+    };
+    assert_eq!(page("a.html"), page("b.html"));
 }
 
 #[test]

@@ -4,5 +4,6 @@
 pub mod figures;
 pub mod rays;
 pub mod scenes;
+pub mod step;
 pub mod structures;
 pub mod volumes;

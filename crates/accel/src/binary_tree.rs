@@ -144,6 +144,7 @@ struct Descent<'a, O, D> {
 impl<O: Observer, D: Fn(&Probe) -> bool> Descent<'_, O, D> {
     /// Where the ray enters the node's box, if it does so before the closest hit.
     fn enter(&mut self, node: &TreeNode) -> Option<f32> {
+        self.observer.region(&|| self.tree.frame.in_scene(node.bounds));
         self.observer.box_test();
         self.slabs.enter_one(node.bounds, self.max)
     }

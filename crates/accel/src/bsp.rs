@@ -375,6 +375,9 @@ impl<'s> BspTree<'s> {
         let mut stack = Stack::new();
         let mut index = 0;
         loop {
+            // A copy: `inside` itself stays in registers only if nobody borrows it.
+            let piece = [inside.min, inside.max];
+            observer.region(&|| Bounds3::of_points(piece.map(|t| ray.at(t))));
             observer.cell_visit();
             let node = &self.nodes[index];
             if let Node::Inner { plane, front, .. } = node {

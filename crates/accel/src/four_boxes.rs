@@ -117,6 +117,12 @@ impl Frame {
         let max = (self.point(bounds.max) + margin).as_vec3a().to_array().map(f32::next_up);
         FrameBox { min: min.into(), max: max.into() }
     }
+
+    /// A box of this frame where it is in the scene, up to rounding.
+    pub(crate) fn in_scene(&self, bounds: FrameBox) -> Bounds3 {
+        let scene = |p: Vec3A| p.as_dvec3() / self.to_unit + self.center;
+        Bounds3 { min: scene(bounds.min), max: scene(bounds.max) }
+    }
 }
 
 /// A ray prepared for conservative `f32` tests of [`FourBoxes`].

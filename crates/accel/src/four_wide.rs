@@ -85,7 +85,10 @@ impl<'s> FourWide<'s> {
         let mut pending = Pending::default();
         let mut next = self.nodes.first();
         while let Some(node) = next {
-            (0..4).for_each(|_| observer.box_test());
+            for lane in 0..4 {
+                observer.region(&|| self.frame.in_scene(node.boxes.get(lane)));
+                observer.box_test();
+            }
             let (near, met) = slabs.enter(&node.boxes, max);
             let near = near.to_array();
             for lane in Lanes::<4>(met & node.leaves) {

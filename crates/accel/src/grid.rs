@@ -246,6 +246,7 @@ impl<'g> RayCells<'g> for Line<'g> {
             return None;
         }
         let cell = self.dda.next()?;
+        observer.region(&|| self.grid.lattice.bounds(cell));
         observer.cell_visit();
         Some(self.grid.cell(cell, enter))
     }
@@ -257,6 +258,7 @@ struct Slices<'g>(Box<dyn Iterator<Item = Cell<'g>> + 'g>);
 impl<'g> RayCells<'g> for Slices<'g> {
     fn next<O: Observer>(&mut self, max: f64, observer: &mut O) -> Option<Cell<'g>> {
         let cell = self.0.next().filter(|cell| cell.enter * Slabs::NEAR <= max)?;
+        observer.region(&|| cell.bounds);
         observer.cell_visit();
         Some(cell)
     }

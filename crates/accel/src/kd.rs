@@ -405,6 +405,7 @@ impl<'s> KdTree<'s> {
         let mut stack = Stack::new();
         let mut index = 0;
         loop {
+            observer.region(&|| self.cell(index));
             observer.cell_visit();
             match self.nodes[index] {
                 Node::Inner { axis, above, split } => {
@@ -451,6 +452,19 @@ impl<'s> KdTree<'s> {
             index = next.node as usize;
             inside = Interval { min: next.inside.min, max: next.inside.max.min(best) };
         }
+    }
+
+    /// The cell of a node, from the planes above it.
+    fn cell(&self, node: usize) -> Bounds3 {
+        let (mut index, mut cell) = (0, self.bounds);
+        while index < node
+            && let Node::Inner { axis, above, split } = self.nodes[index]
+        {
+            let is_above = node >= above as usize;
+            index = if is_above { above as usize } else { index + 1 };
+            cell = halves(cell, usize::from(axis), split)[usize::from(is_above)];
+        }
+        cell
     }
 
     /// The cells that are not divided, in the order of the tree.

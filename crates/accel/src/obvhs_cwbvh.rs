@@ -127,8 +127,12 @@ impl Traversal for ObvhsCwbvh<'_> {
         let mut pending = Pending::default();
         let mut next = self.nodes.first();
         while let Some(node) = next {
-            (0..8).for_each(|_| observer.box_test());
-            let [low, high] = unpack(node).map(|boxes| slabs.enter(&boxes, max));
+            let boxes = unpack(node);
+            for slot in 0..8 {
+                observer.region(&|| self.frame.in_scene(boxes[slot / 4].get(slot % 4)));
+                observer.box_test();
+            }
+            let [low, high] = boxes.map(|boxes| slabs.enter(&boxes, max));
             let mut near = [0.0; 8];
             near[..4].copy_from_slice(&low.0.to_array());
             near[4..].copy_from_slice(&high.0.to_array());

@@ -409,6 +409,7 @@ impl<'i> RayCells<'i> for Descent<'i> {
             if inside.min * Slabs::NEAR > max {
                 continue;
             }
+            observer.region(&|| cube.bounds());
             observer.cell_visit();
             match self.tree.nodes[node as usize] {
                 Node::Inner(first) => self.open(first, cube, inside),

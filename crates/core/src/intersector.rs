@@ -88,6 +88,9 @@ pub trait Observer {
     fn cell_visit(&mut self) {}
     /// A primitive is tested.
     fn primitive_test(&mut self, _primitive: PrimitiveId) {}
+    /// Where the bounding volume or cell is that is told next; of a cell that is no box, around the ray's
+    /// way through it. Worked out only for who asks.
+    fn region(&mut self, _bounds: &dyn Fn() -> Bounds3) {}
 }
 
 /// Nobody watches.
@@ -104,6 +107,10 @@ impl Observer for &mut dyn Observer {
 
     fn primitive_test(&mut self, primitive: PrimitiveId) {
         (**self).primitive_test(primitive);
+    }
+
+    fn region(&mut self, bounds: &dyn Fn() -> Bounds3) {
+        (**self).region(bounds);
     }
 }
 

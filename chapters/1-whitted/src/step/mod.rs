@@ -15,7 +15,7 @@ use lancer_core::scene::Scene;
 use lancer_core::scene::load::Loaded;
 use lancer_core::world::{PointSource, SurfacePoint, World};
 use lancer_exercise::Shown;
-use lancer_figure::{Backdrop, Color, INK, Pen, Step, Stroke, Walk, number};
+use lancer_figure::{Backdrop, Color, INK, Pen, Picture, Step, Stroke, Walk, number};
 use lancer_whitted::{RayCounts, RayEnd, RayKind, RayNode, RayTree, Settings, Whitted, recursion};
 
 use crate::figures::{picture, shown};
@@ -69,15 +69,6 @@ pub fn walk(request: &Request<'_>) -> Walk {
     let steps = walker.steps;
 
     let shadows: usize = tree.nodes.iter().map(|node| node.shadows.len()).sum();
-    let small = |side: u32| (side * SMALL).div_ceil(size.width.max(size.height)).min(side);
-    let small_size = ImageSize::new(small(size.width), small(size.height));
-    let rendering =
-        picture(scene, small_size, PixelSampling::CENTER, |ray, counts: &mut RayCounts| {
-            whitted.trace(ray, counts)
-        });
-    let scaled =
-        |at: u32, side: u32| (u64::from(at) * u64::from(small(side)) / u64::from(side)) as u32;
-    let marked = shown(&rendering.image).marked(scaled(x, size.width), scaled(y, size.height));
     let kinds = [RayKind::Primary, RayKind::Mirror, RayKind::Refracted].map(kind);
     let label = |k: usize| {
         let node = &tree.nodes[k];
@@ -103,14 +94,34 @@ pub fn walk(request: &Request<'_>) -> Walk {
             .into_iter()
             .chain([true, false].map(view::shadow).map(|(name, color)| (name, color, true)))
             .collect(),
-        picture: (marked, format!("pixel ({x}, {y}) of {size}")),
+        picture: marked_picture(scene, &whitted, size, request.pixel),
         calls: view::calls(&tree, 0, &label),
         steps,
     }
 }
 
+/// A small picture of a scene with a pixel of it marked, and what it shows: `size` is that of the picture
+/// that the pixel belongs to.
+pub fn marked_picture(
+    scene: &Scene,
+    whitted: &Whitted<'_>,
+    size: ImageSize,
+    [x, y]: [u32; 2],
+) -> (Picture, String) {
+    let small = |side: u32| (side * SMALL).div_ceil(size.width.max(size.height)).min(side);
+    let small_size = ImageSize::new(small(size.width), small(size.height));
+    let rendering =
+        picture(scene, small_size, PixelSampling::CENTER, |ray, counts: &mut RayCounts| {
+            whitted.trace(ray, counts)
+        });
+    let scaled =
+        |at: u32, side: u32| (u64::from(at) * u64::from(small(side)) / u64::from(side)) as u32;
+    let marked = shown(&rendering.image).marked(scaled(x, size.width), scaled(y, size.height));
+    (marked, format!("pixel ({x}, {y}) of {size}"))
+}
+
 /// A name from a file, as a short line that cannot control a terminal.
-fn printable(name: &str) -> String {
+pub fn printable(name: &str) -> String {
     let clean = |c: char| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c };
     let mut short: String = name.chars().take(LONGEST_NAME).map(clean).collect();
     if name.chars().nth(LONGEST_NAME).is_some() {

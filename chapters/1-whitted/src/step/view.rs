@@ -131,7 +131,8 @@ impl View {
         Self { side, low, high }
     }
 
-    fn rect(&self) -> Rect {
+    /// What is in sight.
+    pub fn rect(&self) -> Rect {
         Rect::new(self.low[0], self.low[1], self.high[0] - self.low[0], self.high[1] - self.low[1])
     }
 

@@ -27,6 +27,18 @@ fn trees_over_hard_scenes_are_valid() {
 }
 
 #[test]
+fn the_cell_of_a_leaf_is_found_from_the_root() {
+    let scene = Scene::of_mesh(icosphere(3));
+    let tree = KdTree::build(&scene);
+    let is_leaf = |&node: &usize| matches!(tree.nodes[node], Node::Leaf { .. });
+    let cells: Vec<Bounds3> =
+        (0..tree.nodes.len()).filter(is_leaf).map(|node| tree.cell(node)).collect();
+    let leaves: Vec<Bounds3> = tree.leaves().iter().map(|leaf| leaf.bounds).collect();
+    assert!(leaves.len() > 100);
+    assert_eq!(cells, leaves);
+}
+
+#[test]
 fn scale_and_place_do_not_change_the_answer() {
     for (name, scene) in hard::scenes() {
         if scene.primitives().len() > 2000 {

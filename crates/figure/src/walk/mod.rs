@@ -53,6 +53,7 @@ pub struct Step {
     lines: Vec<String>,
     opens: bool,
     returns: Option<Color>,
+    clears: bool,
     stays: Option<Draw>,
     passes: Option<Draw>,
 }
@@ -67,6 +68,7 @@ impl Step {
             lines: Vec::new(),
             opens: false,
             returns: None,
+            clears: false,
             stays: None,
             passes: None,
         }
@@ -88,7 +90,12 @@ impl Step {
         Self { returns: Some(answer), ..self }
     }
 
-    /// Adds to the drawing, for this step and all that follow.
+    /// The drawing begins anew: what earlier steps added to it is gone.
+    pub fn clears(self) -> Self {
+        Self { clears: true, ..self }
+    }
+
+    /// Adds to the drawing, for this step and all that follow, up to the next that [`Step::clears`] it.
     pub fn draws(self, draw: impl Fn(&mut Pen<'_>) + 'static) -> Self {
         Self { stays: Some(Box::new(draw)), ..self }
     }
@@ -146,7 +153,7 @@ pub(crate) mod tests {
             Step::new(0, 0, "call 1 <script>").line("a & b").opens().draws(ray),
             Step::new(1, 1, "call 2").opens().points_out(ray),
             Step::new(1, 1, "call 2 returns").line("1").line("2").returns(Color::rgb(1, 2, 3)),
-            Step::new(0, 0, "call 1 returns").returns(Color::WHITE),
+            Step::new(0, 0, "call 1 returns").returns(Color::WHITE).clears().draws(ray),
         ];
         Walk {
             title: "An <algorithm>".into(),

@@ -113,7 +113,11 @@ fn drawing(walk: &Walk) -> Layers {
     layers.add(String::new(), |canvas| with_pen(&walk.backdrop.draw, canvas));
     for (step, number) in walk.steps.iter().zip(1..) {
         if let Some(draw) = &step.stays {
-            layers.add(format!(" data-from=\"{number}\""), |canvas| with_pen(draw, canvas));
+            // `number` counts from 1: the steps behind this one begin at that place.
+            let cleared = walk.steps[number..].iter().position(|later| later.clears);
+            let to = cleared.map(|later| format!(" data-to=\"{}\"", number + later));
+            let shown = format!(" data-from=\"{number}\"{}", to.unwrap_or_default());
+            layers.add(shown, |canvas| with_pen(draw, canvas));
         }
     }
     // On top of everything that stays.
@@ -174,7 +178,8 @@ mod tests {
         let html = sample().to_html();
         let all = |line: &str| html.matches(line).count();
         assert_eq!(all("<section data-from=\"3\" data-to=\"3\" data-call=\"1\">"), 1);
-        assert_eq!(all("<g data-from=\"1\">"), 1, "what step 1 draws stays");
+        assert_eq!(all("<g data-from=\"1\" data-to=\"3\">"), 1, "until step 4 clears the drawing");
+        assert_eq!(all("<g data-from=\"4\">"), 1, "what step 4 draws stays");
         assert_eq!(all("<g data-from=\"2\" data-to=\"2\">"), 1, "what step 2 draws passes");
         for (step, call) in [(1, 0), (2, 1), (3, 1), (4, 0)] {
             let part = format!("<g data-from=\"{step}\" data-call=\"{call}\">");
