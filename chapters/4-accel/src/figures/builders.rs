@@ -73,17 +73,16 @@ pub fn make(effort: Effort) -> Finished {
         chart
     };
     let tenth = |x: f64| (10.0 * x).round() / 10.0;
-    let mut totals = Row::new();
-    for builders in &cases {
-        let mut chart = Chart::new(Axis::log("rays"), Axis::log("seconds"))
-            .title(format!("{}: to build and to trace", builders[0].family));
+    let amortised = |builders: &[Case; 3]| {
+        let mut chart = Chart::new(Axis::log("rays traced"), Axis::log("microseconds per ray"))
+            .title(format!("{}: with its share of the build", builders[0].family));
         for (k, (name, _)) in BUILDERS.iter().enumerate() {
-            let points = (2..=8).map(|e| 10.0_f64.powi(e));
-            let points = points.map(|rays| (rays, builders[k].total(rays)));
+            let points = (4..=16).map(|e| 10.0_f64.powf(0.5 * f64::from(e)));
+            let points = points.map(|rays| (rays, 1e6 * builders[k].total(rays) / rays));
             chart = chart.series(Series::new(*name, color(k)).points(points));
         }
-        totals = totals.panel(1.0, chart);
-    }
+        chart
+    };
     let crossings: Vec<String> =
         cases.iter().map(|[median, sah, _]| crossing(median, sah)).collect();
     let mut data = Table::new([
@@ -118,7 +117,7 @@ pub fn make(effort: Effort) -> Finished {
                     tenth(1e3 * case.build_seconds)
                 })),
         )
-        .panel(totals)
+        .panel(Row::new().panel(1.0, amortised(&cases[0])).panel(1.0, amortised(&cases[2])))
         .note("Where the better tree pays", crossings.join("; "))
         .note("Work", "tests of boxes and triangles by the same number of primary, shadow and diffuse rays; \
              boxes are tested four at a time")

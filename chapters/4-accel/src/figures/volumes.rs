@@ -74,9 +74,11 @@ pub fn make(effort: Effort) -> Finished {
         of.map(|case| case.met).fold(0.0, f64::max)
     };
     let claim = format!(
-        "No volume is the best for all objects: the least work has {} here, and for each line that meets the \
-         object up to {} meet its sphere, {} its box, {} its oriented box and {} its seven slabs.",
-        kinds.join(", "),
+        "No volume is the best for all objects: {} of the {} do the least work for one of them, and for each \
+         line that meets the object up to {} meet its sphere, {} its box, {} its oriented box and {} its \
+         seven slabs.",
+        kinds.len(),
+        Kind::ALL.len(),
         number(most(Kind::Sphere)),
         number(most(Kind::Box)),
         number(most(Kind::OrientedBox)),
