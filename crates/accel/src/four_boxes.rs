@@ -99,6 +99,18 @@ impl Frame {
         Self { center: bounds.center(), to_unit }
     }
 
+    /// Where a box of this frame is in the scene, rounded outwards: what lies in the box by
+    /// [`Frame::outwards`] lies in this one.
+    pub(crate) fn scene_box(&self, bounds: FrameBox) -> Bounds3 {
+        let at = |p: Vec3A| p.as_dvec3() / self.to_unit;
+        let (min, max) = (at(bounds.min), at(bounds.max));
+        let rounding = |p: DVec3| 4.0 * f64::EPSILON * (p.abs() + self.center.abs());
+        Bounds3 {
+            min: self.center + min - rounding(min),
+            max: self.center + max + rounding(max),
+        }
+    }
+
     /// A box in this frame, rounded outwards by more than the primitive test can err.
     pub(crate) fn outwards(&self, bounds: Bounds3) -> FrameBox {
         let margin = f64::from(f32::EPSILON);
