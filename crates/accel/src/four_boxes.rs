@@ -105,10 +105,7 @@ impl Frame {
         let at = |p: Vec3A| p.as_dvec3() / self.to_unit;
         let (min, max) = (at(bounds.min), at(bounds.max));
         let rounding = |p: DVec3| 4.0 * f64::EPSILON * (p.abs() + self.center.abs());
-        Bounds3 {
-            min: self.center + min - rounding(min),
-            max: self.center + max + rounding(max),
-        }
+        Bounds3 { min: self.center + min - rounding(min), max: self.center + max + rounding(max) }
     }
 
     /// A box in this frame, rounded outwards by more than the primitive test can err.

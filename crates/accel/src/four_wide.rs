@@ -124,25 +124,24 @@ impl<'s> FourWide<'s> {
         observer: &mut O,
         visit: impl FnMut(PrimitiveId) -> f64,
     ) {
-        let mut front = Front::new(self.scene, volume, far, observer);
-        if !self.nodes.is_empty() {
-            front.node(&self.scene.bounds(), Below::Node(0));
-        }
-        front.search(visit, |front, below, depth| match below {
-            Below::Leaf(range) => {
-                for &primitive in &self.primitives[range] {
-                    front.primitive(primitive, depth);
+        let root = (!self.nodes.is_empty()).then_some(Below::Node(0));
+        Front::new(self.scene, volume, far, observer).search(root, visit, |front, below, depth| {
+            match below {
+                Below::Leaf(range) => {
+                    for &primitive in &self.primitives[range] {
+                        front.primitive(primitive, depth);
+                    }
                 }
-            }
-            Below::Node(index) => {
-                let node = &self.nodes[index];
-                for lane in 0..4 {
-                    let below = match node.leaves & 1 << lane {
-                        0 => Below::Node(node.first[lane] as usize),
-                        _ if node.count[lane] == 0 => continue,
-                        _ => Below::Leaf(node.leaf(lane)),
-                    };
-                    front.node(&self.frame.scene_box(node.boxes.get(lane)), below);
+                Below::Node(index) => {
+                    let node = &self.nodes[index];
+                    for lane in 0..4 {
+                        let below = match node.leaves & 1 << lane {
+                            0 => Below::Node(node.first[lane] as usize),
+                            _ if node.count[lane] == 0 => continue,
+                            _ => Below::Leaf(node.leaf(lane)),
+                        };
+                        front.node(&self.frame.scene_box(node.boxes.get(lane)), below);
+                    }
                 }
             }
         });

@@ -21,9 +21,6 @@ pub(crate) struct Front<'f, N, O> {
     ahead: BinaryHeap<Ahead<N>>,
 }
 
-/// How far the search is when a node is opened.
-pub(crate) type Depth = f64;
-
 struct Ahead<N> {
     depth: f64,
     what: What<N>,
@@ -52,8 +49,9 @@ impl<'f, N, O: Observer> Front<'f, N, O> {
         }
     }
 
-    /// Tests a primitive, and keeps it if the beam may meet it. It is not visited before `found`.
-    pub(crate) fn primitive(&mut self, primitive: PrimitiveId, found: Depth) {
+    /// Tests a primitive, and keeps it if the beam may meet it. It counts as no nearer than
+    /// where it was found.
+    pub(crate) fn primitive(&mut self, primitive: PrimitiveId, found: f64) {
         self.observer.primitive_test(primitive);
         if let Some(depth) = self.scene.depth_in(self.volume, primitive) {
             self.keep(depth.max(found), What::Primitive(primitive));
@@ -71,12 +69,15 @@ impl<'f, N, O: Observer> Front<'f, N, O> {
         }
     }
 
-    /// Visits the primitives found, while `open` puts in what is in a node.
+    /// Visits the primitives below a root. `open` looks into a node, which begins at the given depth.
     pub(crate) fn search(
         mut self,
+        root: Option<N>,
         mut visit: impl FnMut(PrimitiveId) -> f64,
-        mut open: impl FnMut(&mut Self, N, Depth),
+        mut open: impl FnMut(&mut Self, N, f64),
     ) {
+        let root = root.map(|root| Ahead { depth: f64::NEG_INFINITY, what: What::Node(root) });
+        self.ahead.extend(root);
         while let Some(Ahead { depth, what }) = self.ahead.pop() {
             if depth > self.far {
                 break;
@@ -96,10 +97,7 @@ impl<N> Ord for Ahead<N> {
             What::Node(_) => None,
             What::Primitive(primitive) => Some(*primitive),
         };
-        other
-            .depth
-            .total_cmp(&self.depth)
-            .then_with(|| rank(&other.what).cmp(&rank(&self.what)))
+        other.depth.total_cmp(&self.depth).then_with(|| rank(&other.what).cmp(&rank(&self.what)))
     }
 }
 
@@ -116,3 +114,6 @@ impl<N> PartialEq for Ahead<N> {
 }
 
 impl<N> Eq for Ahead<N> {}
+
+#[cfg(test)]
+mod tests;

@@ -241,27 +241,28 @@ impl BeamTraversal for Grid<'_> {
         visit: impl FnMut(PrimitiveId) -> f64,
     ) {
         let mut tested = HashSet::new();
-        let mut front = Front::new(self.scene, volume, far, observer);
         let everything = [IVec3::ZERO, self.lattice.resolution - 1];
-        if !self.primitives.is_empty() {
-            front.node(&self.bounds, everything);
-        }
-        front.search(visit, |front, [low, high], depth| {
-            if low == high {
-                front.cell();
-                for &primitive in self.cell(low, depth).primitives {
-                    if tested.insert(primitive) {
-                        front.primitive(primitive, depth);
+        let root = (!self.primitives.is_empty()).then_some(everything);
+        Front::new(self.scene, volume, far, observer).search(
+            root,
+            visit,
+            |front, [low, high], depth| {
+                if low == high {
+                    front.cell();
+                    for &primitive in self.cell(low, depth).primitives {
+                        if tested.insert(primitive) {
+                            front.primitive(primitive, depth);
+                        }
                     }
+                    return;
                 }
-                return;
-            }
-            for [low, high] in self.lattice.halves([low, high]) {
-                let bounds =
-                    self.lattice.bounds(low).union(self.lattice.bounds(high)).grown(self.slack);
-                front.node(&bounds, [low, high]);
-            }
-        });
+                for [low, high] in self.lattice.halves([low, high]) {
+                    let bounds =
+                        self.lattice.bounds(low).union(self.lattice.bounds(high)).grown(self.slack);
+                    front.node(&bounds, [low, high]);
+                }
+            },
+        );
     }
 }
 
@@ -379,13 +380,12 @@ impl Lattice {
         let corner = |cell: IVec3| self.min + cell.as_dvec3() * self.width;
         Bounds3 { min: corner(cell), max: corner(cell + 1) }
     }
-}
 
-impl Lattice {
     /// The cells from one to another in two halves, across their longest side.
     fn halves(&self, [low, high]: [IVec3; 2]) -> [[IVec3; 2]; 2] {
         let counts = high - low + 1;
-        let sides = DVec3::select(counts.cmpgt(IVec3::ONE), counts.as_dvec3() * self.width, DVec3::NEG_ONE);
+        let sides =
+            DVec3::select(counts.cmpgt(IVec3::ONE), counts.as_dvec3() * self.width, DVec3::NEG_ONE);
         let axis = sides.max_position();
         let (mut below, mut above) = (high, low);
         below[axis] = low[axis] + counts[axis] / 2 - 1;
@@ -573,7 +573,7 @@ mod tests {
             );
             let wanted = exact(count, origin, direction);
             let missing = |got: Vec<IVec3>| {
-                let got: std::collections::HashSet<IVec3> = got.into_iter().collect();
+                let got: HashSet<IVec3> = got.into_iter().collect();
                 wanted.iter().filter(|cell| !got.contains(*cell)).count()
             };
             visited += wanted.len();
