@@ -1,0 +1,36 @@
+//! Figure 4.12 at its quick size: the claim, and the counts that it rests on.
+
+use chapter_4::figures::FIGURES;
+use lancer_figure::{Effort, Verdict};
+
+#[test]
+fn beams() {
+    let figure =
+        FIGURES.iter().find(|figure| figure.id == "4.12").expect("a figure of the chapter");
+    let finished = (figure.make)(Effort::Quick);
+    assert_eq!(finished.plate.verdict(), Verdict::Holds, "{}", finished.plate.claim());
+    assert_eq!(finished.plate.canvas().faults(), []);
+
+    let csv = finished.data.to_csv();
+    let mut lines = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let header = lines.next().expect("a header");
+    let column = |name: &str| header.iter().position(|column| *column == name).expect("a column");
+    let rows: Vec<Vec<&str>> = lines.collect();
+    assert_eq!(rows.len(), 3 * 2 * 3 * 2 * 3);
+    for triple in rows.chunks(3) {
+        let value =
+            |k: usize, name: &str| -> f64 { triple[k][column(name)].parse().expect("a number") };
+        let names = triple.iter().map(|row| row[column("index")]);
+        assert_eq!(names.collect::<Vec<_>>(), ["linear", "bvh", "grid"]);
+        assert_eq!(value(0, "tests"), value(0, "triangles"));
+        assert_eq!(value(1, "met"), value(0, "met"));
+        assert!(value(2, "met") <= value(0, "met"));
+        // Of a thousand polygons as well, an index tests fewer than brute force by far.
+        for index in 1..3 {
+            assert_eq!(value(index, "hits_lost"), 0.0);
+            assert!(4.0 * value(index, "tests") < value(0, "tests"), "{triple:?}");
+        }
+        assert_eq!(value(1, "unlike_linear"), 0.0);
+        assert!(value(1, "tests") <= value(2, "tests"), "{triple:?}");
+    }
+}
