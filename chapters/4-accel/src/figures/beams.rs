@@ -203,9 +203,8 @@ pub fn make(effort: Effort) -> Finished {
 
     let mut growths = Row::new();
     for window in WINDOWS {
-        let axis = |title: &str| Axis::log(title);
         let mut chart =
-            Chart::new(axis("polygons, n"), axis("polygons per beam").between(1.0, 1e5))
+            Chart::new(Axis::log("polygons, n"), Axis::log("polygons per beam").between(1.0, 1e5))
                 .title(format!("scan: beams of {window}² pixels"))
                 .height(430.0);
         for index in INDEXES {
@@ -221,8 +220,8 @@ pub fn make(effort: Effort) -> Finished {
     let mut prices = Row::new();
     for scene in SCENES {
         let mut chart = Chart::new(
-            Axis::log("window's side (pixels)"),
-            Axis::log("tests per polygon met").between(1.0, 3e3),
+            Axis::log("window's side (pixels)").between(2.0, 128.0),
+            Axis::log("tests per polygon met").between(0.5, 3e3),
         )
         .title(format!("{scene} of {largest}"))
         .height(400.0);
@@ -240,6 +239,11 @@ pub fn make(effort: Effort) -> Finished {
         .panel(plan())
         .panel(growths)
         .panel(prices)
+        .note(
+            "Plan",
+            "a town of 2000 polygons from above, and a beam of 32² pixels that comes down onto it: the houses between \
+             the eye and those in the beam are under it. The ground's two polygons, in the beam, are not drawn",
+        )
         .note("Same answer", format!(
             "the hierarchy visits the polygons of brute force in the same order in all beams but {unlike}; 16 rays \
              in each beam hit {lost} polygons that an index had not found. Met: as far as brute force can tell by \
