@@ -16,21 +16,32 @@ fn beams() {
     let header = lines.next().expect("a header");
     let column = |name: &str| header.iter().position(|column| *column == name).expect("a column");
     let rows: Vec<Vec<&str>> = lines.collect();
-    assert_eq!(rows.len(), 3 * 2 * 3 * 2 * 3);
-    for triple in rows.chunks(3) {
+    assert_eq!(rows.len(), 3 * 2 * 3 * 5);
+    for group in rows.chunks(5) {
+        let names = group.iter().map(|row| (row[column("index")], row[column("bound")]));
+        let wanted = [
+            ("linear", "none"),
+            ("bvh", "none"),
+            ("grid", "none"),
+            ("bvh", "seen"),
+            ("grid", "seen"),
+        ];
+        assert_eq!(names.collect::<Vec<_>>(), wanted);
         let value =
-            |k: usize, name: &str| -> f64 { triple[k][column(name)].parse().expect("a number") };
-        let names = triple.iter().map(|row| row[column("index")]);
-        assert_eq!(names.collect::<Vec<_>>(), ["linear", "bvh", "grid"]);
+            |k: usize, name: &str| -> f64 { group[k][column(name)].parse().expect("a number") };
         assert_eq!(value(0, "tests"), value(0, "triangles"));
         assert_eq!(value(1, "met"), value(0, "met"));
         assert!(value(2, "met") <= value(0, "met"));
-        // Of a thousand polygons as well, an index tests fewer than brute force by far.
-        for index in 1..3 {
+        for index in 1..5 {
             assert_eq!(value(index, "hits_lost"), 0.0);
-            assert!(4.0 * value(index, "tests") < value(0, "tests"), "{triple:?}");
+            // Of a thousand polygons as well, an index tests fewer than brute force by far.
+            assert!(4.0 * value(index, "tests") < value(0, "tests"), "{group:?}");
         }
-        assert_eq!(value(1, "unlike_linear"), 0.0);
-        assert!(value(1, "tests") <= value(2, "tests"), "{triple:?}");
+        for bounded in [0, 2] {
+            let [bvh, grid] = [1 + bounded, 2 + bounded];
+            assert_eq!(value(bvh, "unlike_linear"), 0.0);
+            assert!(value(bvh, "tests") <= value(grid, "tests"), "{group:?}");
+            assert!(value(bvh, "tests") <= value(1, "tests"), "{group:?}");
+        }
     }
 }

@@ -72,16 +72,13 @@ impl Beam {
     }
 }
 
-/// The beams of a size, evenly over the picture.
-fn beams(rays: &PrimaryRays, window: u32, most: u32, index: &dyn Intersector) -> Vec<Beam> {
+/// The beams of a size, evenly over the picture: at most so many of a row.
+fn beams(rays: &PrimaryRays, window: u32, a_row: u32, index: &dyn Intersector) -> Vec<Beam> {
     let across = SIZE.width / window;
-    let all = across * across;
-    let take = all.min(most);
-    let corner = |k: u32| {
-        let k = (2 * k + 1) * all / (2 * take);
-        DVec2::new(f64::from(k % across), f64::from(k / across)) * f64::from(window)
-    };
-    (0..take).map(|k| Beam::new(rays, corner(k), f64::from(window), index)).collect()
+    let take = across.min(a_row);
+    let corner = |k: u32| f64::from((2 * k + 1) * across / (2 * take) * window);
+    let corners = (0..take * take).map(|k| DVec2::new(corner(k % take), corner(k / take)));
+    corners.map(|low| Beam::new(rays, low, f64::from(window), index)).collect()
 }
 
 /// What the beams of one size asked of one index: averages of a beam.
@@ -98,7 +95,7 @@ struct Case {
 
 pub fn make(effort: Effort) -> Finished {
     let sizes: &[u32] = effort.pick(&[1_000, 10_000], &[100, 1_000, 10_000, 100_000]);
-    let most = effort.pick(16, 64);
+    let a_row = effort.pick(4, 8);
     let columns = ["beams", "met", "tests", "boxes", "cells", "hits_lost", "unlike_linear"];
     let keys = ["scene", "triangles", "window", "index", "bound"];
     let mut data = Table::new(keys.into_iter().chain(columns));
@@ -113,10 +110,12 @@ pub fn make(effort: Effort) -> Finished {
             let indexes: [&dyn BeamIndex; 3] = [&linear, &bvh, &grid];
             let rays = scene.camera.primary_rays(SIZE);
             for window in WINDOWS {
-                let beams = beams(&rays, window, most, &bvh);
+                let beams = beams(&rays, window, a_row, &bvh);
+                let mut wanted: Vec<Vec<PrimitiveId>> = Vec::new();
                 for bounded in [false, true] {
-                    let mut wanted = Vec::new();
-                    for (index_name, index) in INDEXES.into_iter().zip(indexes) {
+                    // Brute force tests as many with a bound: what it finds is where its list begins.
+                    let asked = INDEXES.into_iter().zip(indexes).skip(usize::from(bounded));
+                    for (index_name, index) in asked {
                         let mut counts = TestCounts::default();
                         let search = |beam: &Beam| {
                             let far = if bounded { beam.seen } else { f64::INFINITY };
@@ -128,8 +127,14 @@ pub fn make(effort: Effort) -> Finished {
                         if index_name == "linear" {
                             wanted.clone_from(&found);
                         }
-                        let unlike_linear =
-                            found.iter().zip(&wanted).filter(|(a, b)| a != b).count();
+                        let unlike_linear = found
+                            .iter()
+                            .zip(&wanted)
+                            .filter(|(found, all)| match bounded {
+                                true => !all.starts_with(found),
+                                false => found != all,
+                            })
+                            .count();
                         lost += hits_lost;
                         unlike += if index_name == "bvh" { unlike_linear } else { 0 };
                         let per_beam = |count: u64| count as f64 / beams.len() as f64;
@@ -193,7 +198,7 @@ pub fn make(effort: Effort) -> Finished {
         SCENES.map(|scene| growth(scene, window)).into_iter().fold(f64::INFINITY, f64::min)
     };
     let [wide, .., narrow] = WINDOWS.map(slowest);
-    let holds = lost + unlike == 0 && bvh < 2.0 && grid < 20.0 && linear > 200.0 && wide > 0.8;
+    let holds = lost + unlike == 0 && bvh < 3.0 && grid < 20.0 && linear > 200.0 && wide > 0.8;
     let largest = number(f64::from(*sizes.last().expect("some sizes")));
     let claim = format!(
         "For each polygon that a beam meets, among {largest}, the hierarchy tests at most {bvh:.1}, the grid \
@@ -231,8 +236,8 @@ pub fn make(effort: Effort) -> Finished {
         }
         prices = prices.panel(1.0, chart);
     }
-    let bounded = |index: &str| {
-        let tests = [false, true].map(|bounded| last("scan", 4, index, bounded).tests);
+    let bounded = |scene: &str, index: &str| {
+        let tests = [false, true].map(|bounded| last(scene, 4, index, bounded).tests);
         format!("{} instead of {}", decimals(tests[1], 0), decimals(tests[0], 0))
     };
     let plate = Plate::new("4.12", "Beams and the index", claim, holds)
@@ -250,17 +255,18 @@ pub fn make(effort: Effort) -> Finished {
              the corners of each polygon"
         ))
         .note("Far bound", format!(
-            "told the depth of what those rays see, a beam of 4² pixels of the scan costs the hierarchy {}, the grid \
-             {}; the soup has holes, and is searched to its end",
-            bounded("bvh"), bounded("grid")
+            "told the depth of what those rays see, a beam of 4² pixels of the scan costs the hierarchy {} \
+             tests, the grid {}; one of the soup, which one can see through, costs the hierarchy {}",
+            bounded("scan", "bvh"), bounded("scan", "grid"), bounded("soup", "bvh")
         ))
         .note("Growth", format!(
             "exponents of what a beam meets are of the last decade, the least of three scenes; with 4² pixels \
              n^{narrow:.2}"
         ))
         .note("Settings", format!(
-            "a picture of {SIZE}, beams evenly over it, {most} at most of a size; the rest of the work, boxes and \
-             cells, is in the data"
+            "a picture of {SIZE}, beams evenly over it, {} of a size at most; the rest of the work, boxes and \
+             cells, is in the data",
+            a_row * a_row
         ));
     Finished { plate, data }
 }

@@ -316,6 +316,24 @@ mod tests {
         }
     }
 
+    /// Points exactly in the plane of a half-space, n·(n × u) = 0 in integers too long for the products.
+    #[test]
+    fn a_point_in_the_plane_touches() {
+        let mut random = Pcg64::new(13, 1);
+        let mut naive = 0;
+        for _ in 0..20_000 {
+            let mut integer = || i128::from(random.next_u32() >> 7) - (1 << 24);
+            let mut vector = || [integer(), integer(), integer()];
+            let (n, u) = (vector(), vector());
+            let (normal, point) = (real(n, 1.0), real(cross(n, u), 1.0));
+            let half_space = HalfSpace { normal, point: DVec3::ZERO };
+            let volume = ConvexVolume::of_half_spaces(Ray::new(DVec3::ZERO, normal), [half_space]);
+            assert!(volume.may_meet(&Bounds3 { min: point, max: point }));
+            naive += usize::from(normal.dot(point) > 0.0);
+        }
+        assert!(naive > 1_000, "{naive}");
+    }
+
     #[test]
     fn depth_by_hand() {
         let axis = Ray::new(DVec3::X, DVec3::new(0.0, 0.0, -5.0));
