@@ -1,12 +1,13 @@
-use std::collections::HashSet;
+//! The regular grid, and its walks by rays; those by beams are in [`beam`].
+
+mod beam;
 
 use glam::{DVec3, IVec3, UVec3};
-use lancer_core::geometry::{Bounds3, ConvexVolume, Interval, Ray, Slabs};
-use lancer_core::intersector::{BeamTraversal, Hit, Observer, Probe, Traversal};
+use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
+use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
 use lancer_core::scene::{PrimitiveId, Scene};
 
 use crate::cells::{Cell, RayCells, search};
-use crate::front::Front;
 use crate::touching::{Footprint, overlap, rounding, slack, surface_points};
 
 /// The slides' regular subdivision of space, « subdivision spatiale régulière »: a box around the scene
@@ -229,43 +230,6 @@ impl Traversal for Grid<'_> {
     }
 }
 
-impl BeamTraversal for Grid<'_> {
-    /// Halves the lattice, and each half that the beam may meet, down to single cells, nearest first. The
-    /// halves are computed, not stored. A primitive is tested in the first of its cells only, and visited
-    /// once.
-    fn walk_beam<O: Observer>(
-        &self,
-        volume: &ConvexVolume,
-        far: f64,
-        observer: &mut O,
-        visit: impl FnMut(PrimitiveId) -> f64,
-    ) {
-        let mut tested = HashSet::new();
-        let everything = [IVec3::ZERO, self.lattice.resolution - 1];
-        let root = (!self.primitives.is_empty()).then_some(everything);
-        Front::new(self.scene, volume, far, observer).search(
-            root,
-            visit,
-            |front, [low, high], depth| {
-                if low == high {
-                    front.cell();
-                    for &primitive in self.cell(low, depth).primitives {
-                        if tested.insert(primitive) {
-                            front.primitive(primitive, depth);
-                        }
-                    }
-                    return;
-                }
-                for [low, high] in self.lattice.halves([low, high]) {
-                    let bounds =
-                        self.lattice.bounds(low).union(self.lattice.bounds(high)).grown(self.slack);
-                    front.node(&bounds, [low, high]);
-                }
-            },
-        );
-    }
-}
-
 /// How a ray finds its cells.
 enum Path<'g> {
     Line(Line<'g>),
@@ -379,18 +343,6 @@ impl Lattice {
     fn bounds(&self, cell: IVec3) -> Bounds3 {
         let corner = |cell: IVec3| self.min + cell.as_dvec3() * self.width;
         Bounds3 { min: corner(cell), max: corner(cell + 1) }
-    }
-
-    /// The cells from one to another in two halves, across their longest side.
-    fn halves(&self, [low, high]: [IVec3; 2]) -> [[IVec3; 2]; 2] {
-        let counts = high - low + 1;
-        let sides =
-            DVec3::select(counts.cmpgt(IVec3::ONE), counts.as_dvec3() * self.width, DVec3::NEG_ONE);
-        let axis = sides.max_position();
-        let (mut below, mut above) = (high, low);
-        below[axis] = low[axis] + counts[axis] / 2 - 1;
-        above[axis] = below[axis] + 1;
-        [[low, below], [above, high]]
     }
 }
 
@@ -573,7 +525,7 @@ mod tests {
             );
             let wanted = exact(count, origin, direction);
             let missing = |got: Vec<IVec3>| {
-                let got: HashSet<IVec3> = got.into_iter().collect();
+                let got: std::collections::HashSet<IVec3> = got.into_iter().collect();
                 wanted.iter().filter(|cell| !got.contains(*cell)).count()
             };
             visited += wanted.len();
