@@ -289,5 +289,12 @@ fn a_bound_saves_work() {
         let work = |counts: TestCounts| counts.boxes + counts.cells + counts.primitives;
         assert!(3 * work(less) < 2 * work(all), "{less:?} {all:?}");
         assert!(less.primitives < 5 * front.len() as u64, "{less:?} {}", front.len());
+        // One is enough: what is already found behind it is not visited.
+        let mut visits = 0;
+        index.visit_beam(&volume, f64::INFINITY, &mut |_| {
+            visits += 1;
+            f64::NEG_INFINITY
+        });
+        assert_eq!(visits, 1);
     }
 }
