@@ -110,18 +110,21 @@ impl Frame {
         v * self.to_unit
     }
 
+    /// Where a box of this frame is in the scene, rounded outwards: what lies in the box by
+    /// [`Frame::outwards`] lies in this one.
+    pub(crate) fn in_scene(&self, bounds: FrameBox) -> Bounds3 {
+        let at = |p: Vec3A| p.as_dvec3() / self.to_unit;
+        let (min, max) = (at(bounds.min), at(bounds.max));
+        let rounding = |p: DVec3| 4.0 * f64::EPSILON * (p.abs() + self.center.abs());
+        Bounds3 { min: self.center + min - rounding(min), max: self.center + max + rounding(max) }
+    }
+
     /// A box in this frame, rounded outwards by more than the primitive test can err.
     pub(crate) fn outwards(&self, bounds: Bounds3) -> FrameBox {
         let margin = f64::from(f32::EPSILON);
         let min = (self.point(bounds.min) - margin).as_vec3a().to_array().map(f32::next_down);
         let max = (self.point(bounds.max) + margin).as_vec3a().to_array().map(f32::next_up);
         FrameBox { min: min.into(), max: max.into() }
-    }
-
-    /// A box of this frame where it is in the scene, up to rounding.
-    pub(crate) fn in_scene(&self, bounds: FrameBox) -> Bounds3 {
-        let scene = |p: Vec3A| p.as_dvec3() / self.to_unit + self.center;
-        Bounds3 { min: scene(bounds.min), max: scene(bounds.max) }
     }
 }
 

@@ -1,12 +1,13 @@
 use std::ops::Range;
 
-use lancer_core::geometry::{Interval, Ray};
+use lancer_core::geometry::{ConvexVolume, Interval, Ray};
 use lancer_core::intersector::{Hit, Observer, Probe};
 use lancer_core::scene::{PrimitiveId, Scene};
 use smallvec::SmallVec;
 
 use crate::binary_tree::{BinaryTree, Seen, TreeNode, TreeStatistics};
 use crate::four_boxes::{FourBoxes, FourSlabs, Frame};
+use crate::front::Front;
 use crate::pending::{Entered, Lanes, Pending};
 
 /// A binary tree walked two levels at a time: a node here has up to four children, since four boxes
@@ -49,6 +50,13 @@ impl Node {
         let first = self.first[lane] as usize;
         first..first + usize::from(self.count[lane])
     }
+}
+
+/// What a lane of a node refers to.
+enum Below {
+    Node(usize),
+    /// Of the primitives.
+    Leaf(Range<usize>),
 }
 
 impl<'s> FourWide<'s> {
@@ -108,6 +116,38 @@ impl<'s> FourWide<'s> {
             next = pending.next(inner, max).map(|index| &self.nodes[index]);
         }
         probe.best()
+    }
+
+    /// Boxes are decided in `f64`: they are no longer four at a time, since a beam has a dozen
+    /// half-spaces and few boxes need them all.
+    pub(crate) fn walk_beam<O: Observer>(
+        &self,
+        volume: &ConvexVolume,
+        far: f64,
+        observer: &mut O,
+        visit: impl FnMut(PrimitiveId) -> f64,
+    ) {
+        let root = (!self.nodes.is_empty()).then_some(Below::Node(0));
+        Front::new(self.scene, volume, far, observer).search(root, visit, |front, below, depth| {
+            match below {
+                Below::Leaf(range) => {
+                    for &primitive in &self.primitives[range] {
+                        front.primitive(primitive, depth);
+                    }
+                }
+                Below::Node(index) => {
+                    let node = &self.nodes[index];
+                    for lane in 0..4 {
+                        let below = match node.leaves & 1 << lane {
+                            0 => Below::Node(node.first[lane] as usize),
+                            _ if node.count[lane] == 0 => continue,
+                            _ => Below::Leaf(node.leaf(lane)),
+                        };
+                        front.node(&self.frame.in_scene(node.boxes.get(lane)), below);
+                    }
+                }
+            }
+        });
     }
 
     pub(crate) fn validate(&self) -> Result<(), String> {

@@ -1,3 +1,7 @@
+//! The regular grid, and its walks by rays; those by beams are in [`beam`].
+
+mod beam;
+
 use glam::{DVec3, IVec3, UVec3};
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
 use lancer_core::intersector::{Hit, Observer, Probe, Traversal};

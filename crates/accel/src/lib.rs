@@ -11,6 +11,7 @@ mod bvh;
 mod cells;
 mod four_boxes;
 mod four_wide;
+mod front;
 mod grid;
 #[cfg(test)]
 mod hard_sets;

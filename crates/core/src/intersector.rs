@@ -1,10 +1,10 @@
-//! The one open trait of the course: what answers "what does this ray meet?".
+//! The open traits of the course: what answers "what does this ray meet?", and this beam.
 //!
 //! Chapter 4 swaps the answerers; all of them must agree with [`LinearScan`] bit for bit.
 
 use glam::DVec3;
 
-use crate::geometry::{Bounds3, Interval, Ray, Shear, intersect_triangle};
+use crate::geometry::{Bounds3, ConvexVolume, Interval, Ray, Shear, intersect_triangle};
 use crate::scene::{PrimitiveId, Scene};
 
 /// The closest primitive that a ray meets.
@@ -76,6 +76,64 @@ impl<T: Traversal> Observable for T {
         mut observer: &mut dyn Observer,
     ) -> Option<Hit> {
         self.walk(ray, range, &mut observer, |_| any)
+    }
+}
+
+/// An [`Intersector`] that also finds what a beam may meet.
+pub trait BeamIndex: Intersector {
+    /// Visits the primitives whose surfaces meet the volume at a depth up to `far`, near first. The
+    /// visitor returns the new bound, once it knows what hides the rest; larger ones count as the old.
+    ///
+    /// Primitives beside the volume may come, and one may come twice; none is missed. Near first means
+    /// by [`Scene::depth_in`], as far as the index has boxes around whole primitives: one of cells may
+    /// bring a primitive later, with the cell in which it meets the volume, but not behind its own end.
+    fn visit_beam(
+        &self,
+        volume: &ConvexVolume,
+        far: f64,
+        visit: &mut dyn FnMut(PrimitiveId) -> f64,
+    );
+
+    /// The same, watched.
+    fn watch_beam(
+        &self,
+        volume: &ConvexVolume,
+        far: f64,
+        observer: &mut dyn Observer,
+        visit: &mut dyn FnMut(PrimitiveId) -> f64,
+    );
+}
+
+/// A [`Traversal`] for beams: a type that has it is a [`BeamIndex`].
+pub trait BeamTraversal: Intersector {
+    /// Does what [`BeamIndex::visit_beam`] says.
+    fn walk_beam<O: Observer>(
+        &self,
+        volume: &ConvexVolume,
+        far: f64,
+        observer: &mut O,
+        visit: impl FnMut(PrimitiveId) -> f64,
+    );
+}
+
+impl<T: BeamTraversal> BeamIndex for T {
+    fn visit_beam(
+        &self,
+        volume: &ConvexVolume,
+        far: f64,
+        visit: &mut dyn FnMut(PrimitiveId) -> f64,
+    ) {
+        self.walk_beam(volume, far, &mut (), visit);
+    }
+
+    fn watch_beam(
+        &self,
+        volume: &ConvexVolume,
+        far: f64,
+        mut observer: &mut dyn Observer,
+        visit: &mut dyn FnMut(PrimitiveId) -> f64,
+    ) {
+        self.walk_beam(volume, far, &mut observer, visit);
     }
 }
 
@@ -236,6 +294,30 @@ impl Traversal for LinearScan<'_> {
     }
 }
 
+impl BeamTraversal for LinearScan<'_> {
+    /// Tests all primitives, then visits those that are left in order of depth and id.
+    fn walk_beam<O: Observer>(
+        &self,
+        volume: &ConvexVolume,
+        mut far: f64,
+        observer: &mut O,
+        mut visit: impl FnMut(PrimitiveId) -> f64,
+    ) {
+        let depth = |primitive| {
+            observer.primitive_test(primitive);
+            Some((self.scene.depth_in(volume, primitive)?, primitive))
+        };
+        let mut met: Vec<(f64, PrimitiveId)> = self.scene.primitives().filter_map(depth).collect();
+        met.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for (depth, primitive) in met {
+            if depth > far {
+                break;
+            }
+            far = far.min(visit(primitive));
+        }
+    }
+}
+
 impl Scene {
     /// The ids of all primitives, in order.
     pub fn primitives(&self) -> impl ExactSizeIterator<Item = PrimitiveId> + use<> {
@@ -254,6 +336,20 @@ impl Scene {
             let reach = DVec3::splat(sphere.radius);
             Bounds3 { min: sphere.center - reach, max: sphere.center + reach }
         }
+    }
+
+    /// The depth of a primitive's nearest point along the axis of a beam, inside it or not, or less by its
+    /// rounding; `None` if the primitive is entirely beside it. A sphere counts as its box.
+    pub fn depth_in(&self, volume: &ConvexVolume, primitive: PrimitiveId) -> Option<f64> {
+        let index = primitive.0 as usize;
+        if index < self.mesh.triangles.len() {
+            let corners = self.mesh.corners(index);
+            return volume.may_meet_corners(&corners).then(|| volume.depth_of_corners(&corners));
+        }
+        // The rounding of a sphere's extent.
+        let Bounds3 { min, max } = self.primitive_bounds(primitive);
+        let bounds = Bounds3 { min: min.map(f64::next_down), max: max.map(f64::next_up) };
+        volume.may_meet(&bounds).then(|| volume.depth(&bounds))
     }
 
     /// The smallest box around everything.

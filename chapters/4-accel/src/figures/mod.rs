@@ -1,5 +1,6 @@
 //! The figures of the chapter, one file each. To add one: write its `make`, name it in [`FIGURES`].
 
+mod beams;
 mod builders;
 mod nothing;
 mod sah;
@@ -13,4 +14,5 @@ pub const FIGURES: &[Figure] = &[
     Figure { id: "4.2", name: "volumes", make: volumes::make },
     Figure { id: "4.3", name: "builders", make: builders::make },
     Figure { id: "4.4", name: "sah", make: sah::make },
+    Figure { id: "4.12", name: "beams", make: beams::make },
 ];

@@ -3,8 +3,8 @@
 mod grow;
 
 use glam::Vec3A;
-use lancer_core::geometry::{Interval, Ray};
-use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
+use lancer_core::geometry::{ConvexVolume, Interval, Ray};
+use lancer_core::intersector::{BeamTraversal, Hit, Observer, Probe, Traversal};
 use lancer_core::scene::{PrimitiveId, Scene};
 use rayon::prelude::*;
 
@@ -86,6 +86,20 @@ impl Traversal for Bvh<'_> {
         done: impl Fn(&Probe) -> bool,
     ) -> Option<Hit> {
         self.0.walk(ray, range, observer, done)
+    }
+}
+
+impl BeamTraversal for Bvh<'_> {
+    /// Opens the nearest node that the beam may meet, until the nearest of all is a primitive: each comes
+    /// once, in order of depth and id, as by brute force.
+    fn walk_beam<O: Observer>(
+        &self,
+        volume: &ConvexVolume,
+        far: f64,
+        observer: &mut O,
+        visit: impl FnMut(PrimitiveId) -> f64,
+    ) {
+        self.0.walk_beam(volume, far, observer, visit);
     }
 }
 

@@ -311,8 +311,11 @@ pub(super) fn closest<L: Lanes, O: Observer>(
             }
             visit_leaf(wide, &wide_ray, next, &mut candidates);
         } else {
-            (0..WIDTH).for_each(|_| observer.box_test());
             let node = &wide.nodes[next.0 as usize];
+            for lane in 0..WIDTH {
+                observer.region(&|| wide.frame.in_scene(node.bounds(lane)));
+                observer.box_test();
+            }
             let (near, met) = wide_ray.enter(node, candidates.max);
             if met != 0 {
                 if met & (met - 1) == 0 {
@@ -384,8 +387,11 @@ pub(super) fn any<L: Lanes, O: Observer>(
                 return found;
             }
         } else {
-            (0..WIDTH).for_each(|_| observer.box_test());
             let node = &wide.nodes[next.0 as usize];
+            for lane in 0..WIDTH {
+                observer.region(&|| wide.frame.in_scene(node.bounds(lane)));
+                observer.box_test();
+            }
             let (_, mut met) = wide_ray.enter(node, max);
             if met != 0 {
                 // The last one does not pass through the stack.

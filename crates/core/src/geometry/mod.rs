@@ -10,6 +10,7 @@ mod ray;
 mod sphere;
 mod triangle;
 mod triangulate;
+mod volume;
 
 pub use bounds::{Bounds3, Slabs};
 pub use leave::leave_surface;
@@ -19,6 +20,7 @@ pub use triangle::{Shear, TriangleHit, intersect_triangle};
 #[cfg(test)]
 pub(crate) use triangulate::newell_normal;
 pub(crate) use triangulate::triangulate;
+pub use volume::{ConvexVolume, HalfSpace};
 
 /// γ(n): bounds the relative error of n rounded `f64` operations.
 pub(crate) const fn gamma(n: u32) -> f64 {

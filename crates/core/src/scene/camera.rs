@@ -1,6 +1,6 @@
 use glam::{DMat3, DVec2, DVec3};
 
-use crate::geometry::Ray;
+use crate::geometry::{ConvexVolume, Ray};
 use crate::image::ImageSize;
 
 /// A pinhole camera.
@@ -54,6 +54,15 @@ impl PrimaryRays {
         Ray::new(self.eye, (self.corner + x * self.across + y * self.down).normalize())
     }
 
+    /// The beam through a window of the film, from one corner to the opposite one, in pixels as for
+    /// [`PrimaryRays::through`]. Depth is measured along the view axis, for all beams of a picture alike.
+    pub fn beam(&self, low: DVec2, high: DVec2) -> ConvexVolume {
+        let corners = [(low.x, low.y), (high.x, low.y), (high.x, high.y), (low.x, high.y)];
+        let corners =
+            corners.map(|(x, y)| self.eye + self.corner + x * self.across + y * self.down);
+        ConvexVolume::pyramid(Ray::new(self.eye, self.across.cross(self.down)), &corners)
+    }
+
     /// Where on the film a point of the world is seen, in pixels as for [`PrimaryRays::through`], beyond
     /// the picture's edges as well; `None` for a point that is not in front of the eye.
     pub fn film_point(&self, point: DVec3) -> Option<DVec2> {
@@ -99,6 +108,22 @@ mod tests {
             assert!((film - DVec2::new(x, y)).length() < 1e-12, "{film}");
             assert_eq!(rays.film_point(rays.through(x, y).at(-1.0)), None);
         }
+    }
+
+    #[test]
+    fn a_beam_holds_the_rays_of_its_window() {
+        let rays = CAMERA.primary_rays(ImageSize::new(64, 48));
+        let beam = rays.beam(DVec2::new(8.0, 16.0), DVec2::new(16.0, 24.0));
+        let forward = (CAMERA.look_at - CAMERA.eye).normalize();
+        assert!((beam.axis().direction - forward).length() < 1e-15);
+        let meets = |x, y| beam.may_meet_corners(&[rays.through(x, y).at(7.3)]);
+        assert!(meets(8.01, 16.01) && meets(15.99, 23.99));
+        assert!(
+            ![(7.99, 20.0), (16.01, 20.0), (12.0, 15.99), (12.0, 24.01)]
+                .iter()
+                .any(|&(x, y)| meets(x, y))
+        );
+        assert!(!beam.may_meet_corners(&[rays.through(12.0, 20.0).at(-1.0)]));
     }
 
     /// A square picture of opening angle 90° is a face of a cube around the eye: a sixth of 4π.
