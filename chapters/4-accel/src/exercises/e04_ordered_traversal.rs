@@ -17,7 +17,7 @@ use super::{Subject, Walk};
 pub const EXERCISE: Exercise<Subject> = Exercise {
     card: Card {
         id: "E4.4",
-        name: "ordered-traversal",
+        name: "ordered-walk",
         title: "Near child first",
         slide: "Hiérarchie de volumes englobants",
         file: "e04_ordered_traversal.rs",
