@@ -1,6 +1,7 @@
 //! Chapter 4, « Accélération du lancer de rayons »: what is compared, on which scenes and rays, and the
 //! figures. The lesson is `README.md` beside this package's manifest.
 
+pub mod exercises;
 pub mod figures;
 pub mod rays;
 pub mod scenes;

@@ -270,10 +270,13 @@ impl<'g> RayCells<'g> for Slices<'g> {
 
 /// The planes between the cells: plane i of an axis is at min + i · width.
 #[derive(Clone, Copy, Debug)]
-struct Lattice {
-    min: DVec3,
-    width: DVec3,
-    resolution: IVec3,
+pub struct Lattice {
+    /// The lower corner of cell (0, 0, 0).
+    pub min: DVec3,
+    /// The size of a cell.
+    pub width: DVec3,
+    /// Cells along each axis.
+    pub resolution: IVec3,
 }
 
 impl Lattice {
@@ -311,6 +314,15 @@ impl Lattice {
             DVec3::ONE
         };
         Self { min: bounds.min, width: extent / resolution, resolution: resolution.as_ivec3() }
+    }
+
+    /// One step of the 3D-DDA: the cell that a ray in `cell` enters next, and at which parameter; none if it
+    /// leaves the lattice.
+    pub fn step(self, ray: &Ray, cell: IVec3) -> Option<(IVec3, f64)> {
+        let mut dda = Dda::from_cell(self, ray, cell, f64::NAN);
+        dda.next();
+        let enter = dda.enter;
+        dda.next().map(|next| (next, enter))
     }
 
     fn cells(&self) -> usize {
@@ -393,7 +405,11 @@ impl Dda {
     /// The walk of a ray that enters the lattice, or starts in it, at `enter`.
     #[inline]
     fn new(lattice: Lattice, ray: &Ray, enter: f64) -> Self {
-        let start = lattice.cell_of(ray.at(enter));
+        Self::from_cell(lattice, ray, lattice.cell_of(ray.at(enter)), enter)
+    }
+
+    #[inline]
+    fn from_cell(lattice: Lattice, ray: &Ray, start: IVec3, enter: f64) -> Self {
         let axes = [0, 1, 2].map(|k| {
             let (min, width) = (lattice.min[k], lattice.width[k]);
             let (origin, direction, cell) = (ray.origin[k], ray.direction[k], start[k]);

@@ -221,17 +221,33 @@ impl KdBuilder {
         // Only quotients of areas matter: in units of the cell nothing over- or underflows.
         let unit = extent / extent.max_element();
         let share = (split - cell.min[axis]) / extent[axis];
-        let [below, above] = [share, 1.0 - share].map(|share| {
+        let parts = [share, 1.0 - share].map(|share| {
             let mut part = unit;
             part[axis] *= share;
-            half_area(part) / half_area(unit)
+            part
         });
-        let tests = below * counts[0] as f64 + above * counts[1] as f64;
         let bonus = if counts.contains(&0) { 1.0 - self.empty_bonus } else { 1.0 };
-        bonus * (1.0 + self.test_cost * tests)
+        bonus * sah_cost(unit, parts, counts, self.test_cost)
     }
 }
 
+/// What a node costs after a split by the surface area heuristic, in visits of a node: a random line that
+/// meets the node meets a part of it with the probability of the ratio of their surfaces.
+///
+/// ```text
+/// C = 1 + C_i (A_0 n_0 + A_1 n_1) / A
+/// ```
+///
+/// `node` and `parts` are the boxes' extents, A and A_k their surfaces, `counts` the primitives n_k in the
+/// parts; `test_cost`, C_i, is what a primitive test costs.
+#[doc(alias = "SAH")]
+#[inline]
+pub fn sah_cost(node: DVec3, parts: [DVec3; 2], counts: [usize; 2], test_cost: f64) -> f64 {
+    let [below, above] = parts.map(|part| half_area(part) / half_area(node));
+    1.0 + test_cost * (below * counts[0] as f64 + above * counts[1] as f64)
+}
+
+#[inline]
 fn half_area(extent: DVec3) -> f64 {
     extent.x * extent.y + extent.y * extent.z + extent.z * extent.x
 }
@@ -331,6 +347,34 @@ struct Thick {
     negative: bool,
 }
 
+/// The sides of a plane that a ray visits: *near* is where it comes from, below the plane if it travels
+/// towards larger coordinates, +0 among them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sides {
+    /// The near one only.
+    Near,
+    /// The far one only.
+    Far,
+    /// First the near one, then the far one, and in which part of the ray.
+    Both {
+        /// Before the plane is left.
+        near: Interval,
+        /// After it is reached.
+        far: Interval,
+    },
+}
+
+impl Sides {
+    /// Divides the part `inside` of a ray by the plane at `split`, given the ray's origin and direction
+    /// along the plane's axis: one step of a [`KdTree`]'s walk.
+    ///
+    /// Both sides are visited by a ray that runs in the plane, or meets it just where the part begins or
+    /// ends: what lies in the plane may be on either side.
+    pub fn of(split: f64, origin: f64, direction: f64, inside: Interval) -> Self {
+        Thick::new(origin, direction, 0.0).divide(split, inside)
+    }
+}
+
 impl Thick {
     fn new(origin: f64, direction: f64, thickness: f64) -> Self {
         let inverse = 1.0 / direction;
@@ -342,6 +386,27 @@ impl Thick {
             inverse: if direction != 0.0 && inverse.is_infinite() { f64::NAN } else { inverse },
             negative: direction.is_sign_negative(),
         }
+    }
+
+    /// Which sides of the plane the part `inside` of the ray visits.
+    #[inline(always)]
+    fn divide(&self, split: f64, inside: Interval) -> Sides {
+        let [reached, left] = self.cross(split);
+        if reached > inside.max {
+            return Sides::Near;
+        }
+        if left < inside.min {
+            return Sides::Far;
+        }
+        let (mut near, mut far) = (inside, inside);
+        // A NaN leaves both as they are.
+        if left < near.max {
+            near.max = left;
+        }
+        if reached > far.min {
+            far.min = reached;
+        }
+        Sides::Both { near, far }
     }
 
     /// From when to when the ray is in the plane. In a ray parallel to the plane the two are ∞ on one
@@ -410,23 +475,16 @@ impl<'s> KdTree<'s> {
             match self.nodes[index] {
                 Node::Inner { axis, above, split } => {
                     let axis = &axes[usize::from(axis)];
-                    let [reached, left] = axis.cross(split);
                     let (below, above) = (index + 1, above as usize);
                     let (near, far) = if axis.negative { (above, below) } else { (below, above) };
-                    index = if reached > inside.max {
-                        near
-                    } else if left < inside.min {
-                        far
-                    } else {
-                        let mut later = inside;
-                        if reached > later.min {
-                            later.min = reached;
+                    index = match axis.divide(split, inside) {
+                        Sides::Near => near,
+                        Sides::Far => far,
+                        Sides::Both { near: first, far: later } => {
+                            stack.push(Pending { node: far as u32, inside: later });
+                            inside = first;
+                            near
                         }
-                        stack.push(Pending { node: far as u32, inside: later });
-                        if left < inside.max {
-                            inside.max = left;
-                        }
-                        near
                     };
                     continue;
                 }

@@ -26,10 +26,10 @@ mod wide;
 
 pub use binary_tree::{BinaryTree, TreeStatistics};
 pub use bsp::{BspBuilder, BspTree, Planes};
-pub use bvh::{Bvh, Split};
+pub use bvh::{Bvh, Split, split_at_median};
 pub use cells::Cell;
-pub use grid::{Grid, GridBuilder};
-pub use kd::{KdBuilder, KdTree};
+pub use grid::{Grid, GridBuilder, Lattice};
+pub use kd::{KdBuilder, KdTree, Sides, sah_cost};
 pub use obvhs_bvh2::ObvhsBvh2;
 pub use obvhs_cwbvh::ObvhsCwbvh;
 pub use octree::{Octree, OctreeBuilder};

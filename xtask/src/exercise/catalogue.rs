@@ -7,7 +7,8 @@ use crate::names::choose;
 use crate::repository::root;
 
 /// Each chapter's folder in `chapters/`, and its exercises.
-pub const SHELVES: [(&str, &dyn Shelf); 1] = [("1-whitted", &chapter_1::exercises::COURSE)];
+pub const SHELVES: [(&str, &dyn Shelf); 2] =
+    [("1-whitted", &chapter_1::exercises::COURSE), ("4-accel", &chapter_4::exercises::COURSE)];
 
 /// A chapter, as far as its exercises are concerned.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -103,7 +103,7 @@ fn drawn(
 }
 
 /// A picture from what there is in the centre of each pixel, at the film point (x, y).
-fn painted(size: ImageSize, radiance: impl Fn(f64, f64) -> Rgb + Sync) -> Image {
+pub fn painted(size: ImageSize, radiance: impl Fn(f64, f64) -> Rgb + Sync) -> Image {
     let radiance = |film: DVec2, _: &mut u64| radiance(film.x, film.y);
     let painting = render_pixels(size, PixelSampling::CENTER, Control::default(), radiance);
     painting.expect("nobody cancels a picture").image

@@ -1,4 +1,5 @@
 use glam::Vec3A;
+use lancer_core::scene::PrimitiveId;
 
 use super::{Item, Split};
 use crate::binary_tree::{TreeNode, TreeStatistics};
@@ -107,15 +108,25 @@ fn divide(items: &mut [Item], bounds: FrameBox, depth: usize, rule: Rule) -> Opt
     (too_many || pays).then(|| plane.partition(items))
 }
 
-/// The object median along the longest axis of the centres. Where they coincide the smaller id is
-/// left.
 fn halve(items: &mut [Item]) -> usize {
+    split_at_median(items, |item| (item.center(), item.primitive))
+}
+
+/// The object median: sorts the lower half, by the longest axis of the box around the centres, to the
+/// front, and returns how many that are, of an odd number the smaller part. Where centres coincide the
+/// smaller id is lower.
+#[inline]
+pub fn split_at_median<T>(items: &mut [T], key: impl Fn(&T) -> (Vec3A, PrimitiveId)) -> usize {
     let middle = items.len() / 2;
-    let centers = around_centers(items);
-    let axis = (centers.max - centers.min).max_position();
+    let around = |(min, max): (Vec3A, Vec3A), item| {
+        let (center, _) = key(item);
+        (min.min(center), max.max(center))
+    };
+    let (min, max) = items.iter().fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), around);
+    let axis = (max - min).max_position();
     items.select_nth_unstable_by(middle, |a, b| {
-        let along = a.center()[axis].total_cmp(&b.center()[axis]);
-        along.then(a.primitive.cmp(&b.primitive))
+        let ((a, a_id), (b, b_id)) = (key(a), key(b));
+        a[axis].total_cmp(&b[axis]).then(a_id.cmp(&b_id))
     });
     middle
 }
@@ -228,7 +239,6 @@ fn best_plane(items: &[Item]) -> Option<Plane> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lancer_core::scene::PrimitiveId;
 
     const RULE: Rule = Rule { split: Split::Sah, max_leaf: MAX_LEAF };
 

@@ -2,6 +2,8 @@
 
 mod grow;
 
+pub use grow::split_at_median;
+
 use glam::Vec3A;
 use lancer_core::geometry::{ConvexVolume, Interval, Ray};
 use lancer_core::intersector::{BeamTraversal, Hit, Observer, Probe, Traversal};

@@ -1,0 +1,218 @@
+//! E4.2: the median split.
+
+use chapter_1::exercises::painted;
+use glam::DVec3;
+use lancer_core::Rgb;
+use lancer_core::image::{Image, ImageSize};
+use lancer_core::sampling::Uniform;
+use lancer_core::scene::PrimitiveId;
+use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution};
+
+use super::reference::median_split;
+use super::{Item, Subject, color_of};
+
+pub const EXERCISE: Exercise<Subject> = Exercise {
+    card: Card {
+        id: "E4.2",
+        name: "median-split",
+        title: "The median split",
+        slide: "Hiérarchie de volumes englobants",
+        file: "e02_median_split.rs",
+        stub: include_str!("../../stubs/e02_median_split.rs"),
+        functions: &["median_split"],
+        minutes: 15,
+        predict: "512 points, crowded on the left, are divided four times, and each part gets a colour: are \
+                  the parts of equal size?",
+        vary: "cut at the middle of the box instead of the middle item: what becomes of the parts where the \
+               points are crowded, and how deep would such a tree get?",
+        hints: [
+            "Sort along the axis on which the centres are spread widest, and cut so that half of the items are \
+             on each side.",
+            "The extent of the centres is the largest coordinate minus the smallest, on each axis; the cut is \
+             at items.len() / 2.",
+            "Fold the centres with `DVec3::min` and `DVec3::max`; `let axis = (max - min).max_position();`. \
+             Then `items.sort_by(|a, b| a.center[axis].total_cmp(&b.center[axis]).then(a.id.cmp(&b.id)))`.",
+        ],
+        solution: Solution {
+            file: "crates/accel/src/bvh/grow.rs",
+            item: "pub fn split_at_median",
+            notice: "nothing is sorted: `select_nth_unstable_by` only puts the middle item into its place, in \
+                     O(n)",
+        },
+    },
+    checks: &[
+        Check { name: "a row along x", run: row },
+        Check { name: "the longest axis, not the farthest", run: longest },
+        Check { name: "an odd number", run: odd },
+        Check { name: "centres that coincide", run: coincide },
+    ],
+    mutants: &[
+        Mutant {
+            says: "the cut is always across x: take the axis on which the centres are spread widest",
+            caught_by: "the longest axis, not the farthest",
+            mistake: |subject| subject.median_split = |items| along(items, |_, _| 0),
+        },
+        Mutant {
+            says: "the axis is that of the largest coordinates: the extent is the largest minus the smallest",
+            caught_by: "the longest axis, not the farthest",
+            mistake: |subject| {
+                subject.median_split = |items| along(items, |_, max| max.max_position());
+            },
+        },
+        Mutant {
+            says: "the items are not sorted: the order in which they arrive decides",
+            caught_by: "a row along x",
+            mistake: |subject| subject.median_split = |items| items.len() / 2,
+        },
+        Mutant {
+            says: "the upper half is at the front: the order is turned around",
+            caught_by: "a row along x",
+            mistake: |subject| {
+                subject.median_split = |items| {
+                    median_split(items);
+                    items.reverse();
+                    items.len() / 2
+                };
+            },
+        },
+        Mutant {
+            says: "the cut is at the middle of the box: that halves space, not the items",
+            caught_by: "a row along x",
+            mistake: |subject| {
+                subject.median_split = |items| {
+                    let (min, max) = extent(items);
+                    let axis = (max - min).max_position();
+                    let middle = 0.5 * (min + max)[axis];
+                    items.sort_by(|a, b| a.center[axis].total_cmp(&b.center[axis]));
+                    items.partition_point(|item| item.center[axis] < middle)
+                };
+            },
+        },
+        Mutant {
+            says: "of an odd number the front gets the larger part",
+            caught_by: "an odd number",
+            mistake: |subject| {
+                subject.median_split = |items| {
+                    median_split(items);
+                    items.len().div_ceil(2)
+                };
+            },
+        },
+        Mutant {
+            says: "ties are left to chance: where coordinates are equal the smaller id is lower, or the tree \
+                   depends on the order of its input",
+            caught_by: "centres that coincide",
+            mistake: |subject| {
+                subject.median_split = |items| {
+                    let (min, max) = extent(items);
+                    let axis = (max - min).max_position();
+                    items.sort_by(|a, b| a.center[axis].total_cmp(&b.center[axis]));
+                    items.len() / 2
+                };
+            },
+        },
+    ],
+    draw,
+    explain: None,
+};
+
+fn extent(items: &[Item]) -> (DVec3, DVec3) {
+    items.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), item| {
+        (min.min(item.center), max.max(item.center))
+    })
+}
+
+/// The split across an axis that is chosen by the box around the centres.
+fn along(items: &mut [Item], axis: impl Fn(DVec3, DVec3) -> usize) -> usize {
+    let (min, max) = extent(items);
+    let axis = axis(min, max);
+    items.sort_by(|a, b| a.center[axis].total_cmp(&b.center[axis]).then(a.id.cmp(&b.id)));
+    items.len() / 2
+}
+
+/// The ids, in order.
+fn ids(items: &[Item]) -> Vec<u32> {
+    let mut ids: Vec<u32> = items.iter().map(|item| item.id.0).collect();
+    ids.sort_unstable();
+    ids
+}
+
+/// Splits items at these centres, whose ids count from 0, given in the order of `given`.
+fn compare(
+    subject: &Subject,
+    centers: &[[f64; 3]],
+    given: &[u32],
+    wanted: &[u32],
+) -> Result<(), Mismatch> {
+    let item = |&id: &u32| Item { center: centers[id as usize].into(), id: PrimitiveId(id) };
+    let mut items: Vec<Item> = given.iter().map(item).collect();
+    let list = |item: &Item| format!("{} at {}", item.id.0, item.center.shown());
+    let case = items.iter().map(list).collect::<Vec<_>>().join(", ");
+    let count = (subject.median_split)(&mut items);
+    let all: Vec<u32> = (0..given.len() as u32).collect();
+    let got = items.get(..count).map(ids);
+    if ids(&items) == all && got.as_deref() == Some(wanted) {
+        return Ok(());
+    }
+    let got =
+        got.map_or(format!("{count} items"), |front| format!("{front:?} of {:?}", ids(&items)));
+    Err(Mismatch::new(format!("items {case}"), got, format!("{wanted:?} of {all:?} in front")))
+}
+
+fn row(subject: &Subject) -> Result<(), Mismatch> {
+    let centers = [[5.0, 1.0, 2.0], [1.0, 2.0, 1.0], [40.0, 1.5, 2.5], [3.0, 1.25, 1.5]];
+    compare(subject, &centers, &[0, 1, 2, 3], &[1, 3])
+}
+
+/// The coordinates are largest on z, and spread widest on y.
+fn longest(subject: &Subject) -> Result<(), Mismatch> {
+    let centers = [[1.0, -7.0, 20.0], [4.0, 5.0, 21.0], [2.0, 6.0, 22.5], [3.0, -6.0, 23.0]];
+    compare(subject, &centers, &[2, 0, 3, 1], &[0, 3])
+}
+
+fn odd(subject: &Subject) -> Result<(), Mismatch> {
+    let at = |z: f64| [0.5, 0.25 * z, z];
+    let centers = [at(4.0), at(-2.0), at(3.0), at(9.0), at(-1.0)];
+    compare(subject, &centers, &[3, 1, 2, 4, 0], &[1, 4])
+}
+
+fn coincide(subject: &Subject) -> Result<(), Mismatch> {
+    compare(subject, &[[1.5, 2.5, 3.5]; 6], &[4, 5, 1, 0, 3, 2], &[0, 1, 2])?;
+    let centers = [[7.0, 1.0, 1.0], [2.0, 1.5, 1.0], [2.0, 1.0, 1.5], [2.0, 1.0, 1.0]];
+    compare(subject, &centers, &[3, 0, 2, 1], &[1, 2])
+}
+
+/// Points of a square, each pixel in the colour of the part in which the nearest point ends up after four
+/// splits.
+fn draw(subject: &Subject) -> Image {
+    let size = ImageSize::new(160, 160);
+    let point = |id| {
+        let mut random = Uniform::new(42, id, 0);
+        let (x, y) = (random.number().powi(3), random.number());
+        // Dyadic, so that no rounding changes the order.
+        Item { center: (DVec3::new(x, y, 0.0) * 4096.0).floor(), id: PrimitiveId(id) }
+    };
+    let mut items: Vec<Item> = (0..512).map(point).collect();
+    let mut parts = Vec::new();
+    divide(subject, &mut items, 4, &mut parts);
+    painted(size, |x, y| {
+        let at = DVec3::new(x, y, 0.0) * (4096.0 / 160.0);
+        let nearest = parts
+            .iter()
+            .min_by(|a, b| a.0.distance_squared(at).total_cmp(&b.0.distance_squared(at)));
+        nearest.map_or(Rgb::ZERO, |(_, part)| color_of(*part))
+    })
+}
+
+/// Gives each part of the items a number.
+fn divide(subject: &Subject, items: &mut [Item], levels: u32, parts: &mut Vec<(DVec3, usize)>) {
+    if levels == 0 || items.len() < 2 {
+        let part = parts.last().map_or(0, |(_, part)| part + 1);
+        parts.extend(items.iter().map(|item| (item.center, part)));
+        return;
+    }
+    let middle = (subject.median_split)(items).min(items.len());
+    let (front, back) = items.split_at_mut(middle);
+    divide(subject, front, levels - 1, parts);
+    divide(subject, back, levels - 1, parts);
+}

@@ -1,0 +1,239 @@
+//! E4.3: the surface area heuristic.
+
+use chapter_1::exercises::painted;
+use glam::DVec3;
+use lancer_core::Rgb;
+use lancer_core::geometry::Bounds3;
+use lancer_core::image::{Image, ImageSize};
+use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, same, within};
+
+use super::Subject;
+use super::reference::{best_split, sah_cost};
+
+pub const EXERCISE: Exercise<Subject> = Exercise {
+    card: Card {
+        id: "E4.3",
+        name: "sah-cost",
+        title: "What a split costs",
+        slide: "Hiérarchie de volumes englobants",
+        file: "e03_sah_cost.rs",
+        stub: include_str!("../../stubs/e03_sah_cost.rs"),
+        functions: &["sah_cost", "best_split"],
+        minutes: 25,
+        predict: "24 boxes stand in a row, most of them close together, and a bar tells the cost of each cut: \
+                  is the cheapest cut in the middle of the row, in the middle of the space, or elsewhere?",
+        vary: "use the volume instead of the surface, and draw again: which random rays would that be right \
+               for, if for any?",
+        hints: [
+            "A random line that meets a box meets a smaller convex box in it with the probability of the ratio \
+             of their surfaces. What is met is tested.",
+            "C = 1 + (A₀ n₀ + A₁ n₁) / A with the surface A = 2 (xy + yz + zx) of a box of extent (x, y, z); \
+             the 2 cancels. A leaf costs n, one test for each.",
+            "For each `left` from 1 to `boxes.len() - 1`: split the row there, fold each side with \
+             `Bounds3::union` from `Bounds3::EMPTY`, and keep the first smallest cost; answer it only if that \
+             is smaller than `boxes.len() as f64`.",
+        ],
+        solution: Solution {
+            file: "crates/accel/src/kd.rs",
+            item: "pub fn sah_cost",
+            notice: "the hierarchy's own `best_plane`, in crates/accel/src/bvh/grow.rs, tries 15 planes on each \
+                     axis and sums from both ends, so that a split costs O(n)",
+        },
+    },
+    checks: &[
+        Check { name: "a cost by hand", run: by_hand },
+        Check { name: "one part empty of primitives", run: empty_part },
+        Check { name: "flat boxes", run: flat },
+        Check { name: "the gap in a row", run: gap },
+        Check { name: "no split that does not pay", run: leaf },
+        Check { name: "of equal costs the first", run: tie },
+    ],
+    mutants: &[
+        Mutant {
+            says: "volumes are compared: the chance of being met goes with the surface",
+            caught_by: "a cost by hand",
+            mistake: |subject| subject.sah_cost = |n, p, c| by(n, p, c, DVec3::element_product),
+        },
+        Mutant {
+            says: "the surface is the sum of the extents: it is xy + yz + zx",
+            caught_by: "a cost by hand",
+            mistake: |subject| subject.sah_cost = |n, p, c| by(n, p, c, DVec3::element_sum),
+        },
+        Mutant {
+            says: "the sum is not divided by the node's surface: the ratios are probabilities",
+            caught_by: "a cost by hand",
+            mistake: |subject| {
+                subject.sah_cost = |node, parts, counts| {
+                    let area = surface(node.max - node.min);
+                    1.0 + area * (sah_cost(node, parts, counts) - 1.0)
+                };
+            },
+        },
+        Mutant {
+            says: "the 1 for visiting the node is missing",
+            caught_by: "a cost by hand",
+            mistake: |subject| subject.sah_cost = |n, p, c| sah_cost(n, p, c) - 1.0,
+        },
+        Mutant {
+            says: "the counts are swapped: each surface goes with its own number",
+            caught_by: "a cost by hand",
+            mistake: |subject| subject.sah_cost = |n, p, [a, b]| sah_cost(n, p, [b, a]),
+        },
+        Mutant {
+            says: "the row is cut in its middle, whatever that costs",
+            caught_by: "the gap in a row",
+            mistake: |subject| {
+                subject.best_split = |boxes| best_split(boxes).map(|_| boxes.len() / 2);
+            },
+        },
+        Mutant {
+            says: "a split is made where testing all is cheaper: compare the cost with n",
+            caught_by: "no split that does not pay",
+            mistake: |subject| {
+                subject.best_split = |boxes| {
+                    let cost = |left: &usize| cut(boxes, *left);
+                    (1..boxes.len()).min_by(|a, b| cost(a).total_cmp(&cost(b)))
+                };
+            },
+        },
+        Mutant {
+            says: "of equal costs the last is taken: replace the best only by a smaller one",
+            caught_by: "of equal costs the first",
+            mistake: |subject| {
+                subject.best_split = |boxes| {
+                    let cost = |left: &usize| cut(boxes, *left);
+                    let last = (1..boxes.len()).rev().min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
+                    (cost(&last) < boxes.len() as f64).then_some(last)
+                };
+            },
+        },
+    ],
+    draw,
+    explain: None,
+};
+
+fn surface(extent: DVec3) -> f64 {
+    extent.dot(DVec3::new(extent.y, extent.z, extent.x))
+}
+
+/// The formula with another measure of a box than its surface.
+fn by(node: &Bounds3, parts: [&Bounds3; 2], counts: [usize; 2], size: fn(DVec3) -> f64) -> f64 {
+    let of = |bounds: &Bounds3| size(bounds.max - bounds.min);
+    let [a, b] = parts.map(|part| of(part) / of(node));
+    1.0 + a * counts[0] as f64 + b * counts[1] as f64
+}
+
+fn around(boxes: &[Bounds3]) -> Bounds3 {
+    boxes.iter().copied().fold(Bounds3::EMPTY, Bounds3::union)
+}
+
+/// The reference's cost of a cut of a row.
+fn cut(boxes: &[Bounds3], left: usize) -> f64 {
+    let (a, b) = boxes.split_at(left);
+    sah_cost(&around(boxes), [&around(a), &around(b)], [a.len(), b.len()])
+}
+
+fn compare(
+    subject: &Subject,
+    extents: [[f64; 3]; 3],
+    counts: [usize; 2],
+    wanted: f64,
+) -> Result<(), Mismatch> {
+    let min = DVec3::new(-3.0, 1.0, 0.5);
+    let [node, a, b] = extents.map(|extent| Bounds3 { min, max: min + DVec3::from(extent) });
+    let got = (subject.sah_cost)(&node, [&a, &b], counts);
+    let text = extents.map(|extent| DVec3::from(extent).shown());
+    let case = || {
+        format!("extents: node {}, parts {} and {}; counts {counts:?}", text[0], text[1], text[2])
+    };
+    within(1e-12, case, &got, &wanted)
+}
+
+/// Half the surfaces: 6·4 + 4·2 + 2·6 = 44, 2·4 + 4·1 + 1·2 = 14 and 3·1 + 1·2 + 2·3 = 11.
+fn by_hand(subject: &Subject) -> Result<(), Mismatch> {
+    let extents = [[6.0, 4.0, 2.0], [2.0, 4.0, 1.0], [3.0, 1.0, 2.0]];
+    compare(subject, extents, [3, 8], 1.0 + (14.0 * 3.0 + 11.0 * 8.0) / 44.0)
+}
+
+fn empty_part(subject: &Subject) -> Result<(), Mismatch> {
+    let extents = [[6.0, 4.0, 2.0], [2.0, 4.0, 1.0], [3.0, 1.0, 2.0]];
+    compare(subject, extents, [0, 4], 2.0)
+}
+
+fn flat(subject: &Subject) -> Result<(), Mismatch> {
+    let extents = [[5.0, 0.0, 4.0], [2.0, 0.0, 4.0], [3.0, 0.0, 2.0]];
+    compare(subject, extents, [5, 3], 1.0 + (8.0 * 5.0 + 6.0 * 3.0) / 20.0)
+}
+
+/// Boxes of extent (1, 2, 3) at these x.
+fn boxes(at: &[f64]) -> Vec<Bounds3> {
+    let place = |&x: &f64| {
+        let min = DVec3::new(x, -1.0, 0.5);
+        Bounds3 { min, max: min + DVec3::new(1.0, 2.0, 3.0) }
+    };
+    at.iter().map(place).collect()
+}
+
+fn compare_split(subject: &Subject, at: &[f64], wanted: Option<usize>) -> Result<(), Mismatch> {
+    let got = (subject.best_split)(&boxes(at));
+    same(|| format!("boxes of extent (1, 2, 3) at x = {at:?}"), &got, &wanted)
+}
+
+fn gap(subject: &Subject) -> Result<(), Mismatch> {
+    compare_split(subject, &[0.0, 20.0, 21.5, 23.0, 24.5], Some(1))?;
+    compare_split(subject, &[0.0, 1.5, 3.0, 4.5, 5.5, 40.0], Some(5))
+}
+
+fn leaf(subject: &Subject) -> Result<(), Mismatch> {
+    compare_split(subject, &[0.0], None)?;
+    compare_split(subject, &[0.0, 0.25], None)?;
+    compare_split(subject, &[3.0; 4], None)
+}
+
+/// The cuts after the second and the fourth of these six mirror each other, and none is cheaper.
+fn tie(subject: &Subject) -> Result<(), Mismatch> {
+    compare_split(subject, &[0.0, 1.0, 20.0, 21.0, 40.0, 41.0], Some(2))
+}
+
+const COUNT: usize = 24;
+const WIDTH: u32 = 240;
+
+/// A row of boxes, and below each gap the cost of cutting there; the cheapest cut is red.
+fn draw(subject: &Subject) -> Image {
+    let mut x = 0.0;
+    let at: Vec<f64> = (0..COUNT)
+        .map(|k| {
+            x += if k == 3 {
+                30.0
+            } else if k < 8 {
+                4.0
+            } else {
+                1.25
+            };
+            x
+        })
+        .collect();
+    let row = boxes(&at);
+    let whole = around(&row);
+    let scale = (whole.max.x - whole.min.x) / f64::from(WIDTH);
+    let cost = |left: usize| {
+        let (a, b) = row.split_at(left);
+        (subject.sah_cost)(&whole, [&around(a), &around(b)], [a.len(), b.len()])
+    };
+    let costs: Vec<f64> = (1..COUNT).map(cost).collect();
+    let best = (subject.best_split)(&row);
+    painted(ImageSize::new(WIDTH, 120), |px, py| {
+        if py < 30.0 {
+            let x = whole.min.x + scale * px;
+            let inside = row.iter().any(|b| b.min.x <= x && x < b.max.x);
+            return if inside { Rgb::new(0.2, 0.35, 0.6) } else { Rgb::ONE };
+        }
+        let left = 1 + (px / f64::from(WIDTH) * (COUNT - 1) as f64) as usize;
+        let height = 80.0 * costs[left - 1] / (COUNT as f64 + 1.0);
+        match (120.0 - py < height, best == Some(left)) {
+            (true, true) => Rgb::new(0.8, 0.1, 0.1),
+            (true, false) => Rgb::splat(0.45),
+            (false, _) => Rgb::ONE,
+        }
+    })
+}

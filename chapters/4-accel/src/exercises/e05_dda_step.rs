@@ -1,0 +1,299 @@
+//! E4.5: a step through the grid.
+
+use chapter_1::exercises::painted;
+use glam::{DVec3, IVec3};
+use lancer_accel::Lattice;
+use lancer_core::Rgb;
+use lancer_core::geometry::Ray;
+use lancer_core::image::{Image, ImageSize};
+use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, within};
+
+use super::Subject;
+use super::reference::next_cell;
+
+pub const EXERCISE: Exercise<Subject> = Exercise {
+    card: Card {
+        id: "E4.5",
+        name: "dda-step",
+        title: "A step through the grid",
+        slide: "Subdivision spatiale régulière et irrégulière",
+        file: "e05_dda_step.rs",
+        stub: include_str!("../../stubs/e05_dda_step.rs"),
+        functions: &["next_cell"],
+        minutes: 20,
+        predict: "rays leave one corner region in a fan, and the cells that they visit are coloured by the step \
+                  at which they are reached: how many steps does a diagonal take, compared with a ray along an \
+                  axis?",
+        vary: "take the axis of the *largest* direction component at each step, as when drawing a line of \
+               pixels: which cells are left out, and what would hide in them?",
+        hints: [
+            "On each axis only one plane is ahead: the upper one of the cell, or the lower one if the direction \
+             is negative. The ray leaves the cell through the plane that it meets first.",
+            "t_k = (min_k + i · width_k − o_k) / d_k, where i is the cell's index, or one more for a positive \
+             direction. A direction of 0 meets no plane: t_k = ∞, not a quotient.",
+            "`let ahead = i32::from(d > 0.0); let t = if d == 0.0 { f64::INFINITY } else { (min + \
+             f64::from(cell[k] + ahead) * width - o) / d };` and step by 1 or −1 along the axis of the smallest \
+             t; outside 0 to `resolution[k] - 1` the answer is None.",
+        ],
+        solution: Solution {
+            file: "crates/accel/src/grid.rs",
+            item: "fn look_ahead",
+            notice: "each t is computed anew from the index: adding a constant at each step adds up its rounding",
+        },
+    },
+    checks: &[
+        Check { name: "forwards along each axis", run: forwards },
+        Check { name: "backwards along each axis", run: backwards },
+        Check { name: "a direction of 0", run: zero },
+        Check { name: "out of the grid", run: out },
+        Check { name: "two planes at once", run: tie },
+        Check { name: "after a thousand cells", run: far },
+    ],
+    mutants: &[
+        Mutant {
+            says: "the plane ahead is always the upper one: a negative direction meets the lower one",
+            caught_by: "backwards along each axis",
+            mistake: |subject| subject.next_cell = |l, r, c| step(l, r, c, |_| 1, sign, crossing),
+        },
+        Mutant {
+            says: "the step always goes upwards: a negative direction leads to the smaller index",
+            caught_by: "backwards along each axis",
+            mistake: |subject| subject.next_cell = |l, r, c| step(l, r, c, ahead, |_| 1, crossing),
+        },
+        Mutant {
+            says: "the grid's origin is left out: planes are at min + i · width",
+            caught_by: "forwards along each axis",
+            mistake: |subject| {
+                subject.next_cell = |lattice, ray, cell| {
+                    next_cell(&Lattice { min: DVec3::ZERO, ..*lattice }, ray, cell)
+                };
+            },
+        },
+        Mutant {
+            says: "the cells' width is left out: planes are at min + i · width",
+            caught_by: "forwards along each axis",
+            mistake: |subject| {
+                subject.next_cell = |lattice, ray, cell| {
+                    next_cell(&Lattice { width: DVec3::ONE, ..*lattice }, ray, cell)
+                };
+            },
+        },
+        Mutant {
+            says: "the distance of the plane is not divided by the direction: that is no t",
+            caught_by: "forwards along each axis",
+            mistake: |subject| {
+                subject.next_cell =
+                    |l, r, c| step(l, r, c, ahead, sign, |way, d| crossing(way, d.signum()));
+            },
+        },
+        Mutant {
+            says: "a direction of 0 is divided by: a ray in a plane gets 0 / 0, one beside it −∞ or ∞",
+            caught_by: "a direction of 0",
+            mistake: |subject| {
+                subject.next_cell = |l, r, c| step(l, r, c, ahead, sign, |way, d| way / d);
+            },
+        },
+        Mutant {
+            says: "the axis of the longest direction component is taken: cells between are left out",
+            caught_by: "forwards along each axis",
+            mistake: |subject| {
+                subject.next_cell = |lattice, ray, cell| {
+                    let axis = ray.direction.abs().max_position();
+                    let mut only = DVec3::ZERO;
+                    only[axis] = ray.direction[axis];
+                    next_cell(lattice, &Ray::new(ray.origin, only), cell)
+                };
+            },
+        },
+        Mutant {
+            says: "the end of the grid is not looked for: an index must be from 0 to resolution − 1",
+            caught_by: "out of the grid",
+            mistake: |subject| {
+                subject.next_cell = |lattice, ray, cell| {
+                    // As if the grid went on beyond every side.
+                    let more = Lattice {
+                        min: lattice.min - lattice.width,
+                        resolution: lattice.resolution + 2,
+                        ..*lattice
+                    };
+                    next_cell(&more, ray, cell + 1).map(|(cell, t)| (cell - 1, t))
+                };
+            },
+        },
+    ],
+    draw,
+    explain: None,
+};
+
+fn ahead(d: f64) -> i32 {
+    i32::from(d >= 0.0)
+}
+
+fn sign(d: f64) -> i32 {
+    if d < 0.0 { -1 } else { 1 }
+}
+
+fn crossing(way: f64, d: f64) -> f64 {
+    if d == 0.0 { f64::INFINITY } else { way / d }
+}
+
+/// A step by the index of the plane ahead, the way to the next cell, and when a plane is met.
+fn step(
+    lattice: &Lattice,
+    ray: &Ray,
+    cell: IVec3,
+    ahead: fn(f64) -> i32,
+    sign: fn(f64) -> i32,
+    crossing: impl Fn(f64, f64) -> f64,
+) -> Option<(IVec3, f64)> {
+    let t = [0, 1, 2].map(|k| {
+        let d = ray.direction[k];
+        let plane = lattice.min[k] + f64::from(cell[k] + ahead(d)) * lattice.width[k];
+        crossing(plane - ray.origin[k], d)
+    });
+    let axis = (1..3).fold(0, |best, k| if t[k] < t[best] { k } else { best });
+    let mut next = cell;
+    next[axis] += sign(ray.direction[axis]);
+    (0..lattice.resolution[axis]).contains(&next[axis]).then_some((next, t[axis]))
+}
+
+const GRID: Lattice = Lattice {
+    min: DVec3::new(-3.0, 1.0, 2.0),
+    width: DVec3::new(2.0, 0.5, 4.0),
+    resolution: IVec3::new(4, 6, 5),
+};
+
+/// A cell as numbers that can be shown and compared.
+fn numbers(answer: Option<(IVec3, f64)>) -> Option<(DVec3, f64)> {
+    answer.map(|(cell, t)| (cell.as_dvec3(), t))
+}
+
+fn compare(
+    subject: &Subject,
+    lattice: &Lattice,
+    ray: ([f64; 3], [f64; 3]),
+    cell: [i32; 3],
+    wanted: Option<([i32; 3], f64)>,
+) -> Result<(), Mismatch> {
+    let (ray, cell) = (Ray::new(ray.0.into(), ray.1.into()), IVec3::from(cell));
+    let got = (subject.next_cell)(lattice, &ray, cell);
+    let wanted = wanted.map(|(cell, t)| (cell.into(), t));
+    let case = || {
+        format!(
+            "grid from {}, cells of {}, {} of them; {}, in cell {cell}: the next cell and t",
+            lattice.min.shown(),
+            lattice.width.shown(),
+            lattice.resolution,
+            ray.shown()
+        )
+    };
+    within(1e-12, case, &numbers(got), &numbers(wanted))
+}
+
+/// Cell (1, 2, 1) is from (−1, 2, 6) to (1, 2.5, 10).
+const MIDDLE: [f64; 3] = [-0.5, 2.125, 7.0];
+
+fn forwards(subject: &Subject) -> Result<(), Mismatch> {
+    let go = |direction, next, t| {
+        compare(subject, &GRID, (MIDDLE, direction), [1, 2, 1], Some((next, t)))
+    };
+    // By the planes at x = 1, y = 2.5 and z = 10.
+    go([2.0, 0.25, 3.0], [2, 2, 1], 0.75)?;
+    go([0.5, 0.25, 0.5], [1, 3, 1], 1.5)?;
+    go([0.5, 0.125, 4.0], [1, 2, 2], 0.75)
+}
+
+fn backwards(subject: &Subject) -> Result<(), Mismatch> {
+    let go = |direction, next, t| {
+        compare(subject, &GRID, (MIDDLE, direction), [1, 2, 1], Some((next, t)))
+    };
+    // By the planes at x = −1, y = 2 and z = 6.
+    go([-2.0, -0.25, -3.0], [0, 2, 1], 0.25)?;
+    go([-0.25, -0.25, -0.5], [1, 1, 1], 0.5)?;
+    go([0.5, -0.0625, -4.0], [1, 2, 0], 0.25)
+}
+
+fn zero(subject: &Subject) -> Result<(), Mismatch> {
+    for zero in [0.0, -0.0] {
+        let wanted = Some(([1, 3, 1], 1.5));
+        compare(subject, &GRID, (MIDDLE, [zero, 0.25, zero]), [1, 2, 1], wanted)?;
+        // In the planes x = −1 and x = 1, between which the cell is.
+        for x in [-1.0, 1.0] {
+            let start = [x, 2.125, 7.0];
+            compare(subject, &GRID, (start, [zero, 0.25, 0.5]), [1, 2, 1], wanted)?;
+        }
+    }
+    Ok(())
+}
+
+fn out(subject: &Subject) -> Result<(), Mismatch> {
+    let last = [4.0, 3.75, 20.0];
+    compare(subject, &GRID, (last, [1.0, 0.125, 0.5]), [3, 5, 4], None)?;
+    compare(subject, &GRID, (last, [1.0, 0.5, 0.5]), [3, 5, 4], None)?;
+    compare(subject, &GRID, (last, [0.25, 0.0625, 3.0]), [3, 5, 4], None)?;
+    compare(subject, &GRID, ([-2.0, 1.25, 4.0], [-1.0, 0.125, 0.5]), [0, 0, 0], None)
+}
+
+/// y and z are met at t = 1, x at 1.5.
+fn tie(subject: &Subject) -> Result<(), Mismatch> {
+    let wanted = Some(([1, 3, 1], 1.0));
+    compare(subject, &GRID, (MIDDLE, [1.0, 0.375, 3.0]), [1, 2, 1], wanted)
+}
+
+/// Where t has been added up step by step in `f32`, or the plane is a cell off, this is another cell.
+fn far(subject: &Subject) -> Result<(), Mismatch> {
+    let lattice = Lattice {
+        min: DVec3::splat(-0.1),
+        width: DVec3::splat(0.1),
+        resolution: IVec3::splat(1024),
+    };
+    let ray = ([0.05, 0.05, 0.05], [0.3, 0.29, 0.01]);
+    let wanted = (-0.1 + 1001.0 * 0.1 - 0.05) / 0.3;
+    compare(subject, &lattice, ray, [1000, 968, 34], Some(([1001, 968, 34], wanted)))
+}
+
+const SIDE: i32 = 16;
+const PIXELS: u32 = 192;
+
+/// A fan of rays; the cells that they visit, the redder the later, and the rays on top.
+fn draw(subject: &Subject) -> Image {
+    let lattice =
+        Lattice { min: DVec3::ZERO, width: DVec3::ONE, resolution: IVec3::new(SIDE, SIDE, 1) };
+    let rays = [0.05_f64, 0.45, 0.785, 1.3].map(|angle| {
+        Ray::new(DVec3::new(0.6, 0.3, 0.5), DVec3::new(angle.cos(), angle.sin(), 0.0))
+    });
+    let back = Ray::new(DVec3::new(15.3, 9.7, 0.5), DVec3::new(-1.0, 0.55, 0.0));
+    let rays: Vec<Ray> = rays.into_iter().chain([back]).collect();
+    let mut steps = [[None; SIDE as usize]; SIDE as usize];
+    for ray in &rays {
+        let mut cell = Some((ray.origin.as_ivec3(), 0.0));
+        // A wrong step may come back for ever.
+        for count in 0..3 * SIDE {
+            let Some((at, _)) = cell else { break };
+            let row = steps.get_mut(at.y as usize);
+            let Some(place) = row.and_then(|row| row.get_mut(at.x as usize)) else { break };
+            *place = place.or(Some(count));
+            cell = (subject.next_cell)(&lattice, ray, at);
+        }
+    }
+    painted(ImageSize::new(PIXELS, PIXELS), |x, y| {
+        let scale = f64::from(SIDE) / f64::from(PIXELS);
+        let at = DVec3::new(scale * x, scale * (f64::from(PIXELS) - y), 0.5);
+        let on_ray = rays.iter().any(|ray| {
+            let (way, d) = (at - ray.origin, ray.direction.normalize());
+            way.dot(d) > 0.0 && way.cross(d).length() < 0.06
+        });
+        if on_ray {
+            return Rgb::ZERO;
+        }
+        let edge = (at.x.fract() - 0.5).abs().max((at.y.fract() - 0.5).abs()) > 0.46;
+        match steps[at.y as usize][at.x as usize] {
+            _ if edge => Rgb::splat(0.6),
+            None => Rgb::ONE,
+            Some(count) => {
+                let part = f64::from(count) / f64::from(2 * SIDE);
+                Rgb::new(0.3 + 0.7 * part.min(1.0), 0.75 - 0.6 * part.min(1.0), 0.3)
+            }
+        }
+    })
+}

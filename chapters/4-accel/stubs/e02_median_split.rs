@@ -1,0 +1,15 @@
+//! E4.2 The median split. Slide « Hiérarchie de volumes englobants ».
+
+use chapter_4::exercises::prelude::*;
+
+/// Divides the items of a node into two halves: sorts the lower half to the front, and returns how many
+/// items that are.
+///
+/// - The axis is the longest of the box around the centres.
+/// - Lower is what has the smaller coordinate `item.center[axis]`; of equal ones, what has the smaller
+///   `item.id`.
+/// - There are at least two items. Of an odd number the front has the smaller part. The order within each
+///   part does not matter.
+pub fn median_split(items: &mut [Item]) -> usize {
+    todo!("E4.2: choose the axis, sort, cut in the middle")
+}

@@ -1,0 +1,16 @@
+//! E4.4 Near child first. Slide « Hiérarchie de volumes englobants ».
+
+use chapter_4::exercises::prelude::*;
+
+/// Visits a node whose box the ray meets, and what is below it, until the closest hit is known.
+///
+/// - `walk.children(node)`: the two children, in no order; None says that `node` is a leaf.
+/// - `walk.test_leaf(node)`: tests the leaf's primitive and keeps the hit if it is the closest so far.
+/// - `walk.enter(node)`: tests the node's box; the t at which the ray enters it, if it does.
+/// - `walk.closest()`: the t of the closest hit so far; infinite before the first.
+///
+/// Box tests and primitive tests are counted: no box is tested twice, and nothing behind the closest hit
+/// is visited.
+pub fn visit(walk: &mut Walk, node: usize) {
+    todo!("E4.4: test a leaf, or visit the children")
+}

@@ -1,0 +1,99 @@
+//! The exercises of the chapter prove themselves: the right answer passes every check, an untouched stub
+//! passes none, every known slip is caught by the check that names it and looks like no other.
+
+use chapter_4::exercises::{COURSE, Subject};
+use lancer_exercise::{Solution, Verified, passed_by_stub};
+
+#[allow(dead_code, unused_imports, unused_variables)]
+#[path = "../stubs"]
+mod stubs {
+    pub mod e01_slab_test;
+    pub mod e02_median_split;
+    pub mod e03_sah_cost;
+    pub mod e04_ordered_traversal;
+    pub mod e05_dda_step;
+    pub mod e06_kd_plane;
+    pub mod e07_brute_force;
+}
+
+/// The stubs as they are handed out: their functions have the types that the course asks for.
+const STUB: Subject = Subject {
+    slab_test: stubs::e01_slab_test::slab_test,
+    median_split: stubs::e02_median_split::median_split,
+    sah_cost: stubs::e03_sah_cost::sah_cost,
+    best_split: stubs::e03_sah_cost::best_split,
+    visit: stubs::e04_ordered_traversal::visit,
+    next_cell: stubs::e05_dda_step::next_cell,
+    plane_sides: stubs::e06_kd_plane::plane_sides,
+    search_cells: stubs::e07_brute_force::search_cells,
+};
+
+#[test]
+fn the_reference_passes_and_every_slip_is_caught() {
+    for exercise in COURSE.exercises {
+        let verified = Verified::of(exercise, COURSE.reference);
+        assert_eq!(verified.reference_fails, [""; 0], "{}", verified.name);
+        assert!(verified.proofs.len() >= 3, "{}: three slips", verified.name);
+        for proof in &verified.proofs {
+            assert_eq!(proof.twin, None, "{}: {}", verified.name, proof.says);
+            assert!(
+                proof.holds(&verified.checks),
+                "{}: {}: {:?}",
+                verified.name,
+                proof.says,
+                proof.caught
+            );
+        }
+    }
+}
+
+#[test]
+fn an_untouched_stub_passes_no_check() {
+    for exercise in COURSE.exercises {
+        assert_eq!(passed_by_stub(exercise, STUB), [""; 0], "{}", exercise.card.name);
+    }
+}
+
+#[test]
+fn a_stub_names_its_cards_slide() {
+    for exercise in COURSE.exercises {
+        let card = exercise.card;
+        let first = card.stub.lines().next().unwrap();
+        let wanted = (format!("//! {} ", card.id), format!(" Slide « {} ».", card.slide));
+        assert!(first.starts_with(&wanted.0) && first.ends_with(&wanted.1), "{first}");
+    }
+}
+
+/// A slip in the picture's functions shows in the picture.
+#[test]
+fn a_picture_is_the_same_every_time() {
+    for exercise in COURSE.exercises {
+        let [a, b] = [0; 2].map(|_| (exercise.draw)(&COURSE.reference));
+        assert_eq!(a.pixels(), b.pixels(), "{}", exercise.card.id);
+    }
+}
+
+#[test]
+fn every_solution_stands_where_its_card_says() {
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+    for exercise in COURSE.exercises {
+        let Solution { file, item, .. } = exercise.card.solution;
+        let text = std::fs::read_to_string(format!("{root}/{file}")).unwrap();
+        let is_there = text.lines().any(|line| line.trim_start().starts_with(item));
+        assert!(is_there, "{}: no `{item}` in {file}", exercise.card.name);
+    }
+}
+
+#[test]
+fn the_lesson_has_a_table_of_them() {
+    let lesson = include_str!("../README.md");
+    let row = |exercise: &lancer_exercise::Exercise<Subject>| {
+        let card = exercise.card;
+        format!(
+            "| {} | `{}` | {} | {} | « {} » |",
+            card.id, card.name, card.title, card.minutes, card.slide
+        )
+    };
+    let table = COURSE.exercises.iter().map(row).collect::<Vec<_>>().join("\n");
+    assert!(lesson.contains(&table), "the lesson should have:\n{table}");
+}
