@@ -44,9 +44,9 @@ pub struct Args {
     /// appel (visibility and shadows) or whitted (mirrors and glass as well)
     #[arg(long, default_value = "whitted")]
     method: String,
-    /// linear (every primitive for every ray), bvh, obvhs-bvh2, obvhs-cwbvh, grid, octree, kd or bsp: the
-    /// same picture in another time
-    #[arg(long, default_value = "bvh")]
+    /// linear (every primitive for every ray), wide, bvh, obvhs-bvh2, obvhs-cwbvh, grid, octree, kd or bsp:
+    /// the same picture in another time
+    #[arg(long, default_value = "wide")]
     index: String,
     /// Pixels across and down
     #[arg(long, default_value = "512x512", value_name = "WxH", allow_hyphen_values = true)]

@@ -48,7 +48,7 @@ pub struct Args {
     /// Largest number of bounces between the eye and a surface (whitted)
     #[arg(long, default_value_t = 5, value_parser = whole::<u32>(0, 16), allow_negative_numbers = true)]
     depth: u32,
-    /// Only this index: linear, bvh, obvhs-bvh2, obvhs-cwbvh, grid, octree, kd or bsp (accel)
+    /// Only this index: linear, wide, bvh, obvhs-bvh2, obvhs-cwbvh, grid, octree, kd or bsp (accel)
     #[arg(long)]
     index: Option<String>,
     /// Writes a page instead of the text: a slider over the steps, with the rays in a drawing of the scene

@@ -429,7 +429,7 @@ fn a_ray_walks_through_all_indexes_or_one() {
     let all = text(&accepted(&folder, &line).stdout);
     let one = text(&accepted(&folder, &[&line[..], &["--index=GRID"]].concat()).stdout);
     let begins = |walk: &str| walk.matches(" bytes beside the scene").count();
-    assert_eq!((begins(&all), begins(&one)), (8, 1));
+    assert_eq!((begins(&all), begins(&one)), (9, 1));
     assert!(one.contains("grid begins") && one.contains("    linear  "), "{one}");
     let page = |name: &str| {
         let output = accepted(&folder, &[&line[..], &["--out", name]].concat());
