@@ -1,10 +1,9 @@
 //! Every index returns the hit of brute force, the same t bit for bit and the same primitive, for rays
 //! aimed where indexes go wrong.
 
+use chapter_4::structures::STRUCTURES;
 use glam::DVec3;
-use lancer_accel::{
-    BinaryTree, BspTree, Bvh, Grid, KdTree, ObvhsBvh2, ObvhsCwbvh, Octree, Split, Wide,
-};
+use lancer_accel::{BinaryTree, Bvh, ObvhsBvh2, Split, Wide};
 use lancer_core::generate::icosphere;
 use lancer_core::geometry::{Interval, Ray, Sphere};
 use lancer_core::intersector::{Intersector, LinearScan, TestCounts, Traversal};
@@ -65,27 +64,22 @@ fn aimed(class: &str, mesh: &Mesh, offset: DVec3, random: &mut Random) -> Ray {
     }
 }
 
-/// Builds an index of a scene.
-type Build = for<'s> fn(&'s Scene) -> Box<dyn Intersector + 's>;
-
-/// Every index of chapter 4 but the oracle.
-const INDEXES: [(&str, Build); 11] = [
-    ("wide", |scene| Box::new(Wide::build(scene))),
-    ("wide, scalar", |scene| Box::new(Wide::scalar(scene))),
-    ("obvhs-bvh2", |scene| Box::new(ObvhsBvh2::build(scene))),
-    ("obvhs-cwbvh", |scene| Box::new(ObvhsCwbvh::build(scene))),
-    ("bvh", |scene| Box::new(Bvh::build(scene))),
-    ("bvh, median", |scene| Box::new(Bvh::with_split(scene, Split::Median))),
-    ("bvh, recursive", |scene| Box::new(BinaryTree::build(scene, Split::Sah))),
-    ("grid", |scene| Box::new(Grid::build(scene))),
-    ("octree", |scene| Box::new(Octree::build(scene))),
-    ("kd", |scene| Box::new(KdTree::build(scene))),
-    ("bsp", |scene| Box::new(BspTree::build(scene))),
-];
+/// Every index of chapter 4 but the oracle, and the variants of hierarchies.
+fn indexes(scene: &Scene) -> Vec<(&'static str, Box<dyn Intersector + '_>)> {
+    let listed = STRUCTURES.into_iter().filter(|structure| structure.name != "linear");
+    let mut indexes: Vec<(_, Box<dyn Intersector>)> = Vec::new();
+    for structure in listed {
+        indexes.push((structure.name, (structure.build)(scene).index));
+    }
+    indexes.push(("wide, scalar", Box::new(Wide::scalar(scene))));
+    indexes.push(("bvh, median", Box::new(Bvh::with_split(scene, Split::Median))));
+    indexes.push(("bvh, recursive", Box::new(BinaryTree::build(scene, Split::Sah))));
+    indexes
+}
 
 fn assert_agreement(scene: &Scene, offset: DVec3, rays: usize) {
-    for (name, build) in INDEXES {
-        assert_index_agrees(name, &*build(scene), scene, offset, rays);
+    for (name, index) in indexes(scene) {
+        assert_index_agrees(name, &*index, scene, offset, rays);
     }
 }
 
@@ -161,7 +155,7 @@ fn on_spheres_among_triangles() {
 
     // Along the silhouettes, where rounding decides between a hit and a miss.
     let oracle = LinearScan::new(&scene);
-    let indexes = INDEXES.map(|(name, build)| (name, build(&scene)));
+    let indexes = indexes(&scene);
     let mut hits = 0;
     for _ in 0..20_000 {
         let sphere = scene.spheres[random.below(scene.spheres.len())].shape;
@@ -216,7 +210,7 @@ fn on_degenerate_sets() {
     for mesh in [Mesh::default(), triangle(x, y, z), identical, points, uneven] {
         let scene = Scene::of_mesh(mesh);
         let oracle = LinearScan::new(&scene);
-        let indexes = INDEXES.map(|(name, build)| (name, build(&scene)));
+        let indexes = indexes(&scene);
         let mut random = Random::new(23);
         for _ in 0..200 {
             let origin = random.in_cube(3.0);
@@ -238,7 +232,7 @@ fn on_degenerate_sets() {
 fn invalid_rays_meet_nothing() {
     let scene = Scene::of_mesh(icosphere(2));
     let oracle = LinearScan::new(&scene);
-    let indexes = INDEXES.map(|(name, build)| (name, build(&scene)));
+    let indexes = indexes(&scene);
     let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
     let mut rays = vec![Ray::new(DVec3::ZERO, DVec3::ZERO), Ray::new(DVec3::ZERO, -DVec3::ZERO)];
     for value in bad {

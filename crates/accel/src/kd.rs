@@ -1,11 +1,17 @@
 //! « Subdivision spatiale irrégulière »: planes across the axes.
 
+mod sides;
+
 use glam::DVec3;
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
 use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
 use lancer_core::scene::{PrimitiveId, Scene};
 use smallvec::SmallVec;
 
+pub use sides::Sides;
+use sides::Thick;
+
+use crate::sah::sah_cost;
 use crate::spatial::{
     Leaf, PARALLEL, Polygon, REFERENCES_PER_PRIMITIVE, clip, common, depth_limit, margin,
     shared_allowance, thickness,
@@ -231,27 +237,6 @@ impl KdBuilder {
     }
 }
 
-/// What a node costs after a split by the surface area heuristic, in visits of a node: a random line that
-/// meets the node meets a part of it with the probability of the ratio of their surfaces.
-///
-/// ```text
-/// C = 1 + C_i (A_0 n_0 + A_1 n_1) / A
-/// ```
-///
-/// `node` and `parts` are the boxes' extents, A and A_k their surfaces, `counts` the primitives n_k in the
-/// parts; `test_cost`, C_i, is what a primitive test costs.
-#[doc(alias = "SAH")]
-#[inline]
-pub fn sah_cost(node: DVec3, parts: [DVec3; 2], counts: [usize; 2], test_cost: f64) -> f64 {
-    let [below, above] = parts.map(|part| half_area(part) / half_area(node));
-    1.0 + test_cost * (below * counts[0] as f64 + above * counts[1] as f64)
-}
-
-#[inline]
-fn half_area(extent: DVec3) -> f64 {
-    extent.x * extent.y + extent.y * extent.z + extent.z * extent.x
-}
-
 /// The two parts of a cell.
 fn halves(cell: Bounds3, axis: usize, split: f64) -> [Bounds3; 2] {
     let [mut below, mut above] = [cell; 2];
@@ -334,89 +319,6 @@ struct Pending {
 /// What is still to be visited: never more than a tree is deep, which is less than 64 for any number
 /// of primitives that fits an id.
 type Stack = SmallVec<[Pending; 64]>;
-
-/// A thick ray along one axis. It reaches a plane before its middle does, and leaves it after.
-#[derive(Clone, Copy)]
-struct Thick {
-    /// The origin of the side that is ahead.
-    ahead: f64,
-    /// The origin of the side that is behind.
-    behind: f64,
-    inverse: f64,
-    /// The ray travels towards smaller coordinates.
-    negative: bool,
-}
-
-/// The sides of a plane that a ray visits: *near* is where it comes from, below the plane if it travels
-/// towards larger coordinates, +0 among them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Sides {
-    /// The near one only.
-    Near,
-    /// The far one only.
-    Far,
-    /// First the near one, then the far one, and in which part of the ray.
-    Both {
-        /// Before the plane is left.
-        near: Interval,
-        /// After it is reached.
-        far: Interval,
-    },
-}
-
-impl Sides {
-    /// Divides the part `inside` of a ray by the plane at `split`, given the ray's origin and direction
-    /// along the plane's axis: one step of a [`KdTree`]'s walk.
-    ///
-    /// Both sides are visited by a ray that runs in the plane, or meets it just where the part begins or
-    /// ends: what lies in the plane may be on either side.
-    pub fn of(split: f64, origin: f64, direction: f64, inside: Interval) -> Self {
-        Thick::new(origin, direction, 0.0).divide(split, inside)
-    }
-}
-
-impl Thick {
-    fn new(origin: f64, direction: f64, thickness: f64) -> Self {
-        let inverse = 1.0 / direction;
-        let forward = thickness.copysign(direction);
-        Self {
-            ahead: origin + forward,
-            behind: origin - forward,
-            // The overflow of a denormal direction would take a tiny way for a long one.
-            inverse: if direction != 0.0 && inverse.is_infinite() { f64::NAN } else { inverse },
-            negative: direction.is_sign_negative(),
-        }
-    }
-
-    /// Which sides of the plane the part `inside` of the ray visits.
-    #[inline(always)]
-    fn divide(&self, split: f64, inside: Interval) -> Sides {
-        let [reached, left] = self.cross(split);
-        if reached > inside.max {
-            return Sides::Near;
-        }
-        if left < inside.min {
-            return Sides::Far;
-        }
-        let (mut near, mut far) = (inside, inside);
-        // A NaN leaves both as they are.
-        if left < near.max {
-            near.max = left;
-        }
-        if reached > far.min {
-            far.min = reached;
-        }
-        Sides::Both { near, far }
-    }
-
-    /// From when to when the ray is in the plane. In a ray parallel to the plane the two are ∞ on one
-    /// side, −∞ and ∞ in the plane; NaN, when one of its sides runs in the plane, compares as neither
-    /// before nor after anything.
-    #[inline(always)]
-    fn cross(&self, split: f64) -> [f64; 2] {
-        [(split - self.ahead) * self.inverse, (split - self.behind) * self.inverse]
-    }
-}
 
 impl<'s> KdTree<'s> {
     /// Builds the tree over all primitives of the scene.

@@ -34,7 +34,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              is smaller than `boxes.len() as f64`.",
         ],
         solution: Solution {
-            file: "crates/accel/src/kd.rs",
+            file: "crates/accel/src/sah.rs",
             item: "pub fn sah_cost",
             notice: "the hierarchy's own `best_plane`, in crates/accel/src/bvh/grow.rs, tries 15 planes on each \
                      axis and sums from both ends, so that a split costs O(n)",

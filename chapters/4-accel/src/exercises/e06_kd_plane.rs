@@ -35,8 +35,8 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              for `far.min`.",
         ],
         solution: Solution {
-            file: "crates/accel/src/kd.rs",
-            item: "fn divide",
+            file: "crates/accel/src/kd/sides.rs",
+            item: "pub(super) fn divide",
             notice: "the course's ray is thick, by what it may err: it reaches a plane before it leaves it",
         },
     },

@@ -4,6 +4,7 @@ mod beams;
 mod builders;
 mod nothing;
 mod sah;
+mod structures;
 mod volumes;
 
 use lancer_figure::Figure;
@@ -14,5 +15,6 @@ pub const FIGURES: &[Figure] = &[
     Figure { id: "4.2", name: "volumes", make: volumes::make },
     Figure { id: "4.3", name: "builders", make: builders::make },
     Figure { id: "4.4", name: "sah", make: sah::make },
+    Figure { id: "4.7", name: "structures", make: structures::make },
     Figure { id: "4.12", name: "beams", make: beams::make },
 ];

@@ -1,0 +1,301 @@
+//! 4.7: every index on the same rays: counted work, time, memory, and what the build is worth.
+
+use chapter_1::figures::fitted_exponent;
+use lancer_core::image::ImageSize;
+use lancer_core::intersector::TestCounts;
+use lancer_figure::{
+    Axis, BarChart, Chart, Contender, Effort, Finished, Plate, Row, Series, Study, Table,
+    method_color, power_of_ten,
+};
+
+use crate::rays::{Kind, Rays};
+use crate::scenes::{FAMILIES, Family};
+use crate::structures::{STRUCTURES, Structure};
+
+/// Brute force is not asked for more triangles.
+const MOST_LINEAR: u32 = 1_000;
+/// Nor the BSP tree, which is the slowest to build.
+const MOST_BSP: u32 = 10_000;
+
+/// An index of a scene.
+struct Case {
+    family: Family,
+    triangles: usize,
+    name: &'static str,
+    rays: usize,
+    hits: usize,
+    counts: TestCounts,
+    bytes: usize,
+    build: f64,
+    trace: f64,
+}
+
+impl Case {
+    fn per_ray(&self, count: u64) -> f64 {
+        count as f64 / self.rays as f64
+    }
+
+    /// Boxes, cells and primitives, counted alike.
+    fn work(&self) -> f64 {
+        self.per_ray(self.counts.boxes + self.counts.cells + self.counts.primitives)
+    }
+
+    fn nanoseconds(&self) -> f64 {
+        1e9 * self.trace / self.rays as f64
+    }
+
+    /// Seconds for building and tracing so many rays.
+    fn total(&self, rays: f64) -> f64 {
+        self.build + rays * self.trace / self.rays as f64
+    }
+}
+
+fn takes(structure: &Structure, count: u32) -> bool {
+    match structure.name {
+        "linear" => count <= MOST_LINEAR,
+        "bsp" => count <= MOST_BSP,
+        _ => true,
+    }
+}
+
+/// All indexes of one scene, on the same rays.
+///
+/// # Panics
+/// If two indexes differ in an answer: their speeds could not be compared.
+fn measure(family: Family, count: u32, size: ImageSize, runs: usize) -> Vec<Case> {
+    let scene = family.scene(count);
+    let structures: Vec<Structure> =
+        STRUCTURES.into_iter().filter(|structure| takes(structure, count)).collect();
+    let contenders = structures.iter().map(|structure| Contender {
+        label: structure.name.to_owned(),
+        color: method_color(structure.name),
+        knob: String::new(),
+        run: Box::new(|| ((structure.build)(&scene), 0)),
+    });
+    let (builds, built) = Study::measure("", 1, contenders.collect(), |_| Vec::new());
+
+    let rays = Rays::of(&scene, size, &*built.last().expect("an index").index);
+    let count_of_rays = rays.iter().map(|rays| rays.queries.len()).sum();
+    let contenders = structures.iter().zip(&built).map(|(structure, built)| Contender {
+        label: structure.name.to_owned(),
+        color: method_color(structure.name),
+        knob: String::new(),
+        run: Box::new(|| (rays.iter().map(|rays| rays.trace(&*built.index)).sum::<usize>(), 0)),
+    });
+    let (traces, hits) = Study::measure("", runs, contenders.collect(), |_| Vec::new());
+
+    let mut answers = None;
+    let watched = structures.iter().zip(&built).zip(hits).map(|((structure, built), hits)| {
+        let mut counts = TestCounts::default();
+        let mut found = Vec::new();
+        for rays in &rays {
+            let (hits, work) = rays.watch(&*built.index);
+            counts.boxes += work.boxes;
+            counts.cells += work.cells;
+            counts.primitives += work.primitives;
+            // Of a shadow ray only whether it hits is the same for all.
+            let key = |hit: lancer_core::intersector::Hit| match rays.kind {
+                Kind::Shadow => (0, 0),
+                _ => (hit.t.to_bits(), hit.primitive.0),
+            };
+            found.extend(hits.into_iter().map(|hit| hit.map(key)));
+        }
+        assert_eq!(found.iter().flatten().count(), hits, "{}: {}", family.name, structure.name);
+        let wanted = answers.get_or_insert_with(|| found.clone());
+        assert!(*wanted == found, "{} differs in {}", structure.name, family.name);
+        Case {
+            family,
+            triangles: scene.mesh.triangles.len(),
+            name: structure.name,
+            rays: count_of_rays,
+            hits,
+            counts,
+            bytes: built.bytes,
+            build: builds.seconds(structure.name, "").low,
+            trace: traces.seconds(structure.name, "").low,
+        }
+    });
+    watched.collect()
+}
+
+pub fn make(effort: Effort) -> Finished {
+    let decades = effort.pick(2..=4, 2..=5);
+    let size = effort.pick(ImageSize::new(16, 16), ImageSize::new(48, 48));
+    let cases: Vec<Case> = FAMILIES
+        .into_iter()
+        .flat_map(|family| {
+            decades.clone().flat_map(move |decade| {
+                measure(family, 10_u32.pow(decade), size, effort.pick(1, 3))
+            })
+        })
+        .collect();
+    let of = |family: &str, name: &str| -> Vec<&Case> {
+        cases.iter().filter(|case| case.family.name == family && case.name == name).collect()
+    };
+    let exponent = |family: &str, name: &str| {
+        let points: Vec<(f64, f64)> =
+            of(family, name).iter().map(|case| (case.triangles as f64, case.work())).collect();
+        fitted_exponent(&points)
+    };
+    let names = || STRUCTURES.into_iter().map(|structure| structure.name);
+    let exponents: Vec<(&str, [f64; 4])> =
+        names().map(|name| (name, FAMILIES.map(|family| exponent(family.name, name)))).collect();
+    let brute = exponents[0].1;
+    // The greatest size that all but brute force are asked for.
+    let shared = 10_usize.pow((*decades.end()).min(MOST_BSP.ilog10())) as f64;
+    let at_shared = |family: &str| -> Vec<&Case> {
+        let near = |case: &&Case| (0.5..2.0).contains(&(case.triangles as f64 / shared));
+        cases.iter().filter(|case| case.family.name == family).filter(near).collect()
+    };
+    // Where an index comes near to brute force, its exponent says so.
+    let (steady, lost): (Vec<_>, Vec<_>) =
+        exponents[1..].iter().partition(|(_, exponents)| exponents.iter().all(|p| *p < 0.5));
+    let greatest = steady.iter().flat_map(|(_, p)| p).copied().fold(f64::NEG_INFINITY, f64::max);
+    let losses: Vec<String> = lost
+        .iter()
+        .flat_map(|(name, exponents)| {
+            let families = FAMILIES.iter().zip(exponents).filter(|(_, p)| **p >= 0.5);
+            families.map(move |(family, p)| format!("{name} n^{p:.2} in the {}", family.name))
+        })
+        .collect();
+    let is_steady = |name: &str| steady.iter().any(|(steady, _)| *steady == name);
+    let holds = brute.iter().all(|p| (0.9..1.1).contains(p))
+        && ["bvh", "obvhs-bvh2", "obvhs-cwbvh", "octree", "kd"].into_iter().all(is_steady)
+        && exponent("stadium", "grid") > 0.8
+        && exponent("soup", "grid") < 0.5;
+    let claim = format!(
+        "With n triangles a ray costs brute force n^{:.2} tests; {} cost at most n^{greatest:.2} in every kind \
+         of scene, but {}.",
+        brute[0],
+        steady.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", "),
+        losses.join(", "),
+    );
+
+    let growth = |family: Family, title: &str, unit: &str, value: &dyn Fn(&Case) -> f64| {
+        let chart = Chart::new(Axis::log("triangles, n"), Axis::log(unit))
+            .title(format!("{}: {title}", family.name));
+        names().fold(chart, |chart, name| {
+            let points = of(family.name, name);
+            let points = points.iter().map(|case| (case.triangles as f64, value(case)));
+            chart.series(Series::new(name, method_color(name)).points(points))
+        })
+    };
+    let row = |title: &str, unit: &str, value: &dyn Fn(&Case) -> f64, families: [usize; 2]| {
+        families
+            .into_iter()
+            .fold(Row::new(), |row, k| row.panel(1.0, growth(FAMILIES[k], title, unit, value)))
+    };
+    let indexed = || names().filter(|name| *name != "linear");
+    let bars = |title: &str, axis: &str, value: &dyn Fn(&Case) -> f64| {
+        let chart = BarChart::new(axis, FAMILIES.map(|family| family.name)).title(title);
+        indexed().fold(chart, |chart, name| {
+            let values = FAMILIES.map(|family| {
+                let cases = at_shared(family.name);
+                value(cases.iter().find(|case| case.name == name).expect("an index"))
+            });
+            chart.series(name, method_color(name), values)
+        })
+    };
+    let totals = |family: &str| {
+        let chart = Chart::new(Axis::log("rays"), Axis::log("build and trace (s)"))
+            .title(format!("{family}, {} triangles", power_of_ten(shared.log10().round() as i32)));
+        at_shared(family).into_iter().fold(chart, |chart, case| {
+            let points = (6..=18).map(|step| 10_f64.powf(f64::from(step) / 2.0));
+            let points = points.map(|rays| (rays, case.total(rays)));
+            chart.series(Series::new(case.name, method_color(case.name)).points(points).curve())
+        })
+    };
+
+    let mut data = Table::new([
+        "family",
+        "triangles",
+        "index",
+        "rays",
+        "hits",
+        "boxes_per_ray",
+        "cells_per_ray",
+        "primitive_tests_per_ray",
+        "ns_per_ray",
+        "bytes_per_triangle",
+        "build_seconds",
+        "seconds_for_1e4_rays",
+        "seconds_for_1e6_rays",
+        "seconds_for_1e8_rays",
+        "work_exponent",
+    ]);
+    for case in &cases {
+        data.push([
+            case.family.name.into(),
+            case.triangles.into(),
+            case.name.into(),
+            case.rays.into(),
+            case.hits.into(),
+            case.per_ray(case.counts.boxes).into(),
+            case.per_ray(case.counts.cells).into(),
+            case.per_ray(case.counts.primitives).into(),
+            case.nanoseconds().into(),
+            (case.bytes as f64 / case.triangles as f64).into(),
+            case.build.into(),
+            case.total(1e4).into(),
+            case.total(1e6).into(),
+            case.total(1e8).into(),
+            exponent(case.family.name, case.name).into(),
+        ]);
+    }
+    let listed = exponents
+        .iter()
+        .map(|(name, exponents)| {
+            let exponents = exponents.map(|p| lancer_figure::decimals(p, 2));
+            format!("{name} {}", exponents.join(" / "))
+        })
+        .collect::<Vec<_>>()
+        .join("; ");
+    let cheapest = FAMILIES
+        .map(|family| {
+            let cheapest = [1e4, 1e6, 1e8].map(|rays| {
+                let least = at_shared(family.name)
+                    .into_iter()
+                    .min_by(|a, b| a.total(rays).total_cmp(&b.total(rays)));
+                least.expect("an index").name
+            });
+            format!("{} {}", family.name, cheapest.join(" / "))
+        })
+        .join("; ");
+    let hits = FAMILIES
+        .map(|family| {
+            let cases = at_shared(family.name);
+            format!("{} {} of {} rays", family.name, cases[0].hits, cases[0].rays)
+        })
+        .join("; ");
+    let plate = Plate::new("4.7", "Which index to take", claim, holds)
+        .panel(row("work", "boxes, cells and triangles per ray", &Case::work, [0, 1]))
+        .panel(row("work", "boxes, cells and triangles per ray", &Case::work, [2, 3]))
+        .panel(row("time", "nanoseconds per ray", &Case::nanoseconds, [0, 3]))
+        .panel(
+            Row::new()
+                .panel(1.0, bars("Triangle tests", "per ray", &|case| {
+                    case.per_ray(case.counts.primitives)
+                }))
+                .panel(1.0, bars("Memory", "bytes per triangle", &|case| {
+                    case.bytes as f64 / case.triangles as f64
+                })),
+        )
+        .panel(Row::new().panel(1.0, totals("scan")).panel(1.0, totals("stadium")))
+        .note("Exponents", format!("of the work, soup / scan / town / stadium: {listed}"))
+        .note("Cheapest", format!(
+            "build and trace of 10⁴ / 10⁶ / 10⁸ rays at {} triangles: {cheapest}",
+            power_of_ten(shared.log10().round() as i32)
+        ))
+        .note("Equal answers", format!(
+            "every index returns the same t, bit for bit, and the same triangle (of a shadow ray, whether it is \
+             blocked), or the figure stops: {hits} hit"
+        ))
+        .note("Method", format!(
+            "primary, shadow and diffuse rays of a picture of {size}; one build, the least of the traces' times, \
+             taken in turn. Up to {MOST_LINEAR} triangles by brute force, up to {MOST_BSP} by the BSP tree, \
+             whose build is the slowest"
+        ))
+        .note("Limits", "tests of boxes, visits of cells and tests of triangles are counted alike but do not cost \
+             alike: compare work within one index, time between indexes. Times are of this machine");
+    Finished { plate, data }
+}
