@@ -155,7 +155,7 @@ fn wrong_options_are_refused_with_a_cure() {
     error: invalid value 'inf' for '--exposure <EV>': `inf` is not a number; write one such as -1.5
     error: invalid value 'bright' for '--exposure <EV>': `bright` is not a number; write one such as -1.5
     error: unknown method `witted`; known: whitted, appel
-    error: unknown index `linaer`; known: linear, octree, bvh, grid, kd, bsp, obvhs-bvh2, obvhs-cwbvh
+    error: unknown index `linaer`; known: linear, wide, octree, bvh, grid, kd, bsp, obvhs-bvh2, obvhs-cwbvh
     ");
 }
 
@@ -416,8 +416,8 @@ fn steps_that_cannot_be_walked_are_refused() {
     assert_snapshot!(refusals(&folder, accel.map(line)), @r"
     error: --pixel 8,0 lies outside of the picture of 8x8: columns are 0 to 7, rows 0 to 7
     error: --pixel 0,8 lies outside of the picture of 8x8: columns are 0 to 7, rows 0 to 7
-    error: unknown index `dk`; known: kd, bvh, bsp, grid, linear, octree, obvhs-bvh2, obvhs-cwbvh
-    error: unknown index ``; known: kd, bvh, bsp, grid, linear, octree, obvhs-bvh2, obvhs-cwbvh
+    error: unknown index `dk`; known: kd, wide, bvh, bsp, grid, linear, octree, obvhs-bvh2, obvhs-cwbvh
+    error: unknown index ``; known: kd, bvh, bsp, wide, grid, linear, octree, obvhs-bvh2, obvhs-cwbvh
     error: --index: whitted's walk is the same with every index; leave it out
     ");
 }
