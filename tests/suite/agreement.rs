@@ -1,6 +1,7 @@
 //! Every index returns the hit of brute force, the same t bit for bit and the same primitive, for rays
 //! aimed where indexes go wrong.
 
+use chapter_4::aimed::{CLASSES, aimed};
 use chapter_4::structures::STRUCTURES;
 use glam::DVec3;
 use lancer_accel::{BinaryTree, Bvh, ObvhsBvh2, Split, Wide};
@@ -11,58 +12,6 @@ use lancer_core::scene::{MaterialId, Mesh, Scene, SphereObject};
 
 use crate::meshes::{OFFSETS, cube, moved};
 use crate::random::Random;
-
-/// The ways of aiming, each known to break some index.
-const CLASSES: [&str; 8] = [
-    "at a vertex",
-    "at an edge",
-    "along an axis through a vertex",
-    "vertex to vertex",
-    "in an axis plane through a vertex",
-    "from the surface",
-    "from far away",
-    "random",
-];
-
-fn aimed(class: &str, mesh: &Mesh, offset: DVec3, random: &mut Random) -> Ray {
-    let pick = |random: &mut Random| mesh.positions[random.below(mesh.positions.len())];
-    let vertex = pick(random);
-    let inside = offset + random.in_cube(0.4);
-    match class {
-        "at a vertex" => Ray::new(inside, vertex - inside),
-        "at an edge" => {
-            let [a, b, _] = mesh.corners(random.below(mesh.triangles.len()));
-            Ray::new(inside, a + random.unit() * (b - a) - inside)
-        }
-        "along an axis through a vertex" => {
-            let axis = random.below(3);
-            let mut direction = DVec3::ZERO;
-            for k in 0..3 {
-                let sign = if random.unit() < 0.5 { -1.0 } else { 1.0 };
-                direction[k] = if k == axis { sign } else { sign * 0.0 };
-            }
-            let mut origin = vertex;
-            origin[axis] -= 8.0 * direction[axis];
-            Ray::new(origin, direction)
-        }
-        "vertex to vertex" => Ray::new(vertex, pick(random) - vertex),
-        "in an axis plane through a vertex" => {
-            let mut direction = random.direction();
-            direction[random.below(3)] = 0.0;
-            Ray::new(vertex - 4.0 * direction, direction)
-        }
-        "from the surface" => {
-            let [a, b, c] = mesh.corners(random.below(mesh.triangles.len()));
-            let w = random.weights();
-            Ray::new(w.x * a + w.y * b + w.z * c, random.direction())
-        }
-        "from far away" => {
-            let origin = offset + 10.0_f64.powf(random.between(2.0, 12.0)) * random.direction();
-            Ray::new(origin, vertex - origin)
-        }
-        _ => Ray::new(offset + random.in_cube(1.5), random.direction()),
-    }
-}
 
 /// Every index of chapter 4 but the oracle, and the variants of hierarchies.
 fn indexes(scene: &Scene) -> Vec<(&'static str, Box<dyn Intersector + '_>)> {
@@ -95,7 +44,7 @@ fn assert_index_agrees(
         let mut random = Random::new(11);
         let mut hits = 0;
         for _ in 0..rays {
-            let ray = aimed(class, &scene.mesh, offset, &mut random);
+            let ray = aimed(class, &scene.mesh, offset, &mut || random.unit());
             let wanted = oracle.closest_hit(&ray, Interval::POSITIVE);
             let got = index.closest_hit(&ray, Interval::POSITIVE);
             let key = |hit: Option<lancer_core::intersector::Hit>| {
@@ -261,7 +210,7 @@ fn the_tree_tests_few_primitives() {
     let (mut all, mut few) = (TestCounts::default(), TestCounts::default());
     let mut random = Random::new(29);
     for _ in 0..500 {
-        let ray = aimed("at an edge", &scene.mesh, DVec3::ZERO, &mut random);
+        let ray = aimed("at an edge", &scene.mesh, DVec3::ZERO, &mut || random.unit());
         let before = few;
         let wanted = oracle.walk(&ray, Interval::POSITIVE, &mut all, |_| false);
         assert_eq!(index.walk(&ray, Interval::POSITIVE, &mut few, |_| false), wanted);

@@ -1,10 +1,11 @@
 //! Grid and octree: what breaks subdivisions of space and nothing else.
 
+use chapter_4::naive::first_hit_wins;
 use glam::DVec3;
 use lancer_accel::{Grid, GridBuilder, Octree, OctreeBuilder};
 use lancer_core::generate::icosphere;
 use lancer_core::geometry::{Bounds3, Interval, Ray};
-use lancer_core::intersector::{Hit, Intersector, LinearScan, Probe, TestCounts, Traversal};
+use lancer_core::intersector::{Intersector, LinearScan, Probe, TestCounts, Traversal};
 use lancer_core::scene::{MaterialId, Mesh, Scene};
 
 use crate::meshes::cube;
@@ -179,18 +180,6 @@ fn mailboxes_change_no_bit() {
     let [a, b, c, d] = counts;
     assert!(a.cells == b.cells && 10 * a.primitives < 9 * b.primitives, "{a:?} {b:?}");
     assert!(c.cells == d.cells && 10 * c.primitives < 9 * d.primitives, "{c:?} {d:?}");
-}
-
-/// The textbook's rule: the first cell in which anything is hit has the closest hit. But the hit may be
-/// in a later cell, and something else before it.
-fn first_hit_wins(scene: &Scene, grid: &Grid, ray: &Ray) -> Option<Hit> {
-    grid.cells(ray, Interval::POSITIVE).find_map(|cell| {
-        let mut probe = Probe::new(scene, ray, Interval::POSITIVE);
-        cell.primitives.iter().for_each(|&primitive| {
-            probe.test(primitive);
-        });
-        probe.best()
-    })
 }
 
 #[test]

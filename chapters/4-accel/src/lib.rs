@@ -1,8 +1,10 @@
 //! Chapter 4, « Accélération du lancer de rayons »: what is compared, on which scenes and rays, and the
 //! figures. The lesson is `README.md` beside this package's manifest.
 
+pub mod aimed;
 pub mod exercises;
 pub mod figures;
+pub mod naive;
 pub mod rays;
 pub mod scenes;
 pub mod step;
