@@ -98,4 +98,12 @@ impl Rays {
             |Query { ray, range }: &Query| index.watch(ray, *range, self.kind.any(), &mut counts);
         (self.queries.iter().map(answer).collect(), counts)
     }
+
+    /// Whether two indexes have answered alike: the same hits or, where any will do, a hit to the same rays.
+    pub fn agree(&self, a: &[Option<Hit>], b: &[Option<Hit>]) -> bool {
+        match self.kind.any() {
+            true => a.iter().map(Option::is_some).eq(b.iter().map(Option::is_some)),
+            false => a == b,
+        }
+    }
 }

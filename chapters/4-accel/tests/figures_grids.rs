@@ -1,0 +1,48 @@
+//! The figures of subdivisions of space at their quick size: the claims hold, and the plates are legible.
+
+use chapter_4::figures::FIGURES;
+use lancer_figure::{Effort, Value, Verdict};
+
+/// The rows of a figure whose claim holds on a legible plate.
+fn rows(id: &str) -> Vec<Vec<Value>> {
+    let figure = FIGURES.iter().find(|figure| figure.id == id).expect("a figure of the chapter");
+    let finished = (figure.make)(Effort::Quick);
+    assert_eq!(finished.plate.id(), id);
+    assert_eq!(finished.plate.verdict(), Verdict::Holds, "{}", finished.plate.claim());
+    assert_eq!(finished.plate.canvas().faults(), [], "{id}: text overlaps or leaves the plate");
+    let wrong = finished.data.columns().iter().position(|column| column == "wrong");
+    let wrong = wrong.expect("a column that says whether answers differ from brute force's");
+    assert!(finished.data.rows().iter().all(|row| row[wrong] == Value::Integer(0)));
+    finished.data.rows().to_vec()
+}
+
+fn number(value: &Value) -> f64 {
+    match value {
+        Value::Number(number) => *number,
+        Value::Integer(integer) => *integer as f64,
+        Value::Text(text) => panic!("{text:?} is not a number"),
+    }
+}
+
+fn is(value: &Value, name: &str) -> bool {
+    *value == Value::from(name)
+}
+
+/// 4.5: between the extremes lies a density that costs least, and in the stadium none is good.
+#[test]
+fn grid() {
+    let rows = rows("4.5");
+    let sums = |scene: &str, grid: bool| -> Vec<f64> {
+        let of = rows.iter().filter(|row| is(&row[0], scene) && is(&row[1], "grid") == grid);
+        of.map(|row| number(&row[5]) + number(&row[6])).collect()
+    };
+    let least = |sums: &[f64]| sums.iter().copied().fold(f64::INFINITY, f64::min);
+    let soup = sums("soup", true);
+    assert_eq!(soup.len(), 10);
+    assert!(soup[0] > 1.5 * least(&soup) && soup[9] > 1.5 * least(&soup));
+    let (grids, others) = (sums("stadium", true), sums("stadium", false));
+    assert_eq!((grids.len(), others.len()), (10, 4));
+    assert!(others.iter().all(|other| least(&grids) > 5.0 * other));
+    let spared = |row: &Vec<Value>| number(&row[6]) <= number(&row[7]);
+    assert!(rows.iter().filter(|row| is(&row[1], "grid")).all(spared), "a mailbox adds no test");
+}
