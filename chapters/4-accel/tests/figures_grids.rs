@@ -46,3 +46,19 @@ fn grid() {
     let spared = |row: &Vec<Value>| number(&row[6]) <= number(&row[7]);
     assert!(rows.iter().filter(|row| is(&row[1], "grid")).all(spared), "a mailbox adds no test");
 }
+
+/// 4.8: hierarchies visit more and test less than subdivisions, each of them.
+#[test]
+fn heat() {
+    let rows = rows("4.8");
+    assert_eq!(rows.len(), 8);
+    let cuts_space =
+        |row: &&Vec<Value>| ["grid", "octree", "kd", "bsp"].iter().any(|name| is(&row[0], name));
+    let (subdivisions, hierarchies): (Vec<_>, Vec<_>) = rows.iter().partition(cuts_space);
+    for subdivision in &subdivisions {
+        for hierarchy in &hierarchies {
+            assert!(number(&hierarchy[1]) > number(&subdivision[1]), "visits");
+            assert!(number(&hierarchy[2]) < number(&subdivision[2]), "tests");
+        }
+    }
+}

@@ -1,18 +1,15 @@
 //! 4.5: how many cells a grid should have, and the « théière dans un stade » where no number helps.
 
-use chapter_1::figures::{picture, shown};
 use lancer_accel::GridBuilder;
-use lancer_core::Rgb;
-use lancer_core::geometry::Interval;
 use lancer_core::image::ImageSize;
 use lancer_core::intersector::{Hit, LinearScan, Observable, TestCounts};
-use lancer_core::sampling::PixelSampling;
 use lancer_core::scene::{Camera, Scene};
 use lancer_figure::{
-    Axis, Chart, Effort, Finished, Montage, Picture, Plate, Row, Series, Table, Tile,
-    category_color, method_color, number,
+    Axis, Chart, Effort, Finished, Montage, Plate, Row, Series, Table, Tile, category_color,
+    method_color, number,
 };
 
+use super::shaded;
 use crate::rays::Rays;
 use crate::scenes::family;
 use crate::structures::structure;
@@ -186,13 +183,14 @@ pub fn make(effort: Effort) -> Finished {
 
     let framing = Camera::framing(stadium.bounding_sphere().expect("triangles"));
     // A flat scene does not fill its sphere.
-    let far = Camera { fov: 0.6 * framing.fov, ..framing };
+    let far = Camera { fov: 0.75 * framing.fov, ..framing };
+    let shown_size = effort.pick(ImageSize::new(48, 32), ImageSize::new(360, 240));
     let pictures = Montage::new()
         .columns(1)
-        .tile(Tile::new("The stadium: its teapot is not a pixel", shaded(&stadium, far, effort)))
+        .tile(Tile::new("The whole stadium", shaded(&stadium, far, shown_size)))
         .tile(Tile::new(
             "Its teapot, a thousandth as large",
-            shaded(&stadium, stadium.camera, effort),
+            shaded(&stadium, stadium.camera, shown_size),
         ));
 
     let mut data = Table::new([
@@ -249,7 +247,8 @@ pub fn make(effort: Effort) -> Finished {
         ))
         .note("Why it loses", format!(
             "cells that suit the stadium hold the whole teapot: at one cell per triangle a ray tests {} of its {} \
-             triangles; the trees divide where the triangles are",
+             triangles; the trees divide where the triangles are. The teapot stands in the \
+             middle: an even number of cells along x or z halves it",
             number(at_one(&uneven).work.tests.round()),
             stadium.primitives().len(),
         ))
@@ -265,20 +264,4 @@ pub fn make(effort: Effort) -> Finished {
 /// The grid with its default density.
 fn at_one(trials: &[Trial]) -> &Trial {
     trials.iter().find(|trial| trial.density == 1.0).expect("the default density was tried")
-}
-
-/// A scene from somewhere, the lighter the more it faces the eye.
-fn shaded(scene: &Scene, camera: Camera, effort: Effort) -> Picture {
-    let index = (structure("bvh").build)(scene).index;
-    let scene = Scene { camera, ..scene.clone() };
-    let size = effort.pick(ImageSize::new(48, 32), ImageSize::new(360, 240));
-    let radiance = |ray: &_, _: &mut u32| {
-        let hit = index.closest_hit(ray, Interval::POSITIVE);
-        let facing = |hit: Hit| {
-            let normal = scene.surface_at(ray, &hit).geometric_normal;
-            normal.dot(ray.direction.normalize()).abs()
-        };
-        Rgb::splat(hit.map_or(1.0, |hit| 0.05 + 0.6 * facing(hit)))
-    };
-    shown(&picture(&scene, size, PixelSampling::CENTER, radiance).image)
 }
