@@ -62,3 +62,17 @@ fn heat() {
         }
     }
 }
+
+/// 4.6: the grid's fullest cell is fuller than any other's, and each drawn ray visits several cells.
+#[test]
+fn irregular() {
+    let rows = rows("4.6");
+    let (grid, trees) = rows.split_first().expect("four structures");
+    assert!(is(&grid[0], "grid") && trees.len() == 3);
+    assert!(trees.iter().all(|tree| number(&grid[3]) >= 1.5 * number(&tree[3])));
+    for row in &rows {
+        let leaves_visited = number(&row[4]);
+        assert!((3.0..10.0).contains(&leaves_visited), "{leaves_visited} numbers to be drawn");
+        assert!(leaves_visited <= number(&row[5]), "a leaf drawn is a node visited");
+    }
+}

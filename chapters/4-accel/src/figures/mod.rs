@@ -2,6 +2,7 @@
 
 mod grid;
 mod heat;
+mod irregular;
 
 use chapter_1::figures::{picture, shown};
 use lancer_core::Rgb;
@@ -17,6 +18,7 @@ use crate::structures::structure;
 /// All figures, in the lesson's order.
 pub const FIGURES: &[Figure] = &[
     Figure { id: "4.5", name: "grid", make: grid::make },
+    Figure { id: "4.6", name: "irregular", make: irregular::make },
     Figure { id: "4.8", name: "heat", make: heat::make },
 ];
 
