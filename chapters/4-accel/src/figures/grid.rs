@@ -144,23 +144,21 @@ pub fn make(effort: Effort) -> Finished {
         number(lost.round()),
     );
 
-    let mut work = Chart::new(Axis::log("cells per triangle"), Axis::log("per ray"))
-        .title("Triangles evenly spread (soup): counted work");
-    let lines: [(&str, usize, fn(&Trial) -> f64); 3] = [
-        ("cells visited", 4, |trial| trial.work.cells),
-        ("triangle tests", 3, |trial| trial.work.tests),
-        ("tests, no mailbox", 3, |trial| trial.unmarked.tests),
-    ];
-    for (label, color, value) in lines {
+    let line = |label: &str, color, value: fn(&Trial) -> f64| {
         let points = even.iter().map(|trial| (trial.density, value(trial)));
-        let series = Series::new(label, category_color(color)).points(points);
-        work = work.series(if label.contains("no mailbox") { series.dashed() } else { series });
-    }
+        Series::new(label, category_color(color)).points(points)
+    };
     let sum = |label: &str, trials: &[Trial]| {
         let points = trials.iter().map(|trial| (trial.density, trial.work.sum()));
         Series::new(label, method_color("grid")).points(points)
     };
-    let work = work.series(sum("sum", &even)).vertical(lowest.density, "minimum");
+    let work = Chart::new(Axis::log("cells per triangle"), Axis::log("per ray"))
+        .title("Triangles evenly spread (soup): counted work")
+        .series(line("cells visited", 4, |trial| trial.work.cells))
+        .series(line("triangle tests", 3, |trial| trial.work.tests))
+        .series(line("tests, no mailbox", 3, |trial| trial.unmarked.tests).dashed())
+        .series(sum("sum", &even))
+        .vertical(lowest.density, "minimum");
 
     let mut memory = Chart::new(Axis::log("cells per triangle"), Axis::log("bytes per triangle"))
         .title("Memory of the grid");
