@@ -96,9 +96,15 @@ fn sweep(scene: &Scene, questions: &Questions) -> Vec<Trial> {
     DENSITIES.into_iter().map(trial).collect()
 }
 
+impl Trial {
+    fn sum(&self) -> f64 {
+        self.work.sum()
+    }
+}
+
 /// The trial of the least work.
 fn best(trials: &[Trial]) -> &Trial {
-    let least = trials.iter().min_by(|a, b| a.work.sum().total_cmp(&b.work.sum()));
+    let least = trials.iter().min_by(|a, b| a.sum().total_cmp(&b.sum()));
     least.expect("densities were tried")
 }
 
@@ -117,29 +123,26 @@ pub fn make(effort: Effort) -> Finished {
         })
         .collect();
 
-    let falls = |values: &[f64]| values.is_sorted_by(|a, b| a >= b);
     let of = |value: fn(&Trial) -> f64| -> Vec<f64> { even.iter().map(value).collect() };
-    let (tests, cells, sums) =
-        (of(|trial| trial.work.tests), of(|trial| -trial.work.cells), of(|trial| trial.work.sum()));
+    let falls = |values: &[f64]| values.is_sorted_by(|a, b| a >= b);
+    let sums = of(Trial::sum);
     let lowest = best(&even);
     let bottom = even.iter().position(|trial| trial.density == lowest.density).unwrap_or(0);
-    let mut climb = sums[bottom..].to_vec();
-    climb.reverse();
-    let one_minimum = falls(&sums[..=bottom]) && falls(&climb);
+    let one_minimum = falls(&sums[..=bottom]) && sums[bottom..].is_sorted();
     let at_ends = [sums[0], sums[sums.len() - 1]];
-    let u_shape = falls(&tests)
-        && falls(&cells)
+    let u_shape = falls(&of(|trial| trial.work.tests))
+        && of(|trial| trial.work.cells).is_sorted()
         && one_minimum
-        && at_ends.iter().all(|end| *end > 1.5 * lowest.work.sum());
+        && at_ends.iter().all(|end| *end > 1.5 * lowest.sum());
     let worst = others.iter().map(|(_, _, work)| work.sum()).fold(0.0, f64::max);
-    let lost = best(&uneven).work.sum() / worst;
+    let lost = best(&uneven).sum() / worst;
     let right = even.iter().chain(&uneven).all(|trial| !trial.work.wrong && !trial.unmarked.wrong)
         && others.iter().all(|(_, _, work)| !work.wrong);
     let holds = u_shape && lost > 5.0 && right;
     let claim = format!(
         "More cells mean fewer primitive tests and more steps: their sum has one minimum, {} per ray at {} cells per \
          triangle, but with a teapot in a stadium the best grid of all costs {} times as much as the dearest tree.",
-        number(lowest.work.sum().round()),
+        number(lowest.sum().round()),
         number(lowest.density),
         number(lost.round()),
     );
@@ -149,7 +152,7 @@ pub fn make(effort: Effort) -> Finished {
         Series::new(label, category_color(color)).points(points)
     };
     let sum = |label: &str, trials: &[Trial]| {
-        let points = trials.iter().map(|trial| (trial.density, trial.work.sum()));
+        let points = trials.iter().map(|trial| (trial.density, trial.sum()));
         Series::new(label, method_color("grid")).points(points)
     };
     let work = Chart::new(Axis::log("cells per triangle"), Axis::log("per ray"))

@@ -19,6 +19,7 @@ const PLAN: f64 = -0.6 * WALL;
 const WALL: f64 = 0.02;
 
 /// A cell's outline in the plan, and how many walls come near it.
+#[derive(Clone)]
 struct Region {
     outline: Vec<Point>,
     walls: usize,
@@ -206,11 +207,10 @@ pub fn make(effort: Effort) -> Finished {
         visited.filter_map(of_leaf).collect(),
     ];
     let bsp = BspTree::build(&scene);
-    let mut cells = outlines(&bsp, bounds, effort.pick(150, 500));
-    let visited = bsp.visited_leaves(&ray, Interval::POSITIVE);
-    let visited = visited.iter().filter_map(|number| cells.get(number));
-    let visited = visited.map(|cell| Region { outline: cell.outline.clone(), ..*cell }).collect();
-    let bsp_regions = [std::mem::take(&mut cells).into_values().collect(), visited];
+    let cells = outlines(&bsp, bounds, effort.pick(150, 500));
+    let visited = bsp.visited_leaves(&ray, Interval::POSITIVE).into_iter();
+    let visited = visited.map(|number| cells[&number].clone()).collect();
+    let bsp_regions = [cells.into_values().collect(), visited];
     let all = [
         drawn("grid", &grid, &fan, grid_regions),
         drawn("octree", &octree, &fan, octree_regions),
