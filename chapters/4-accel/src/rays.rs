@@ -98,4 +98,37 @@ impl Rays {
             |Query { ray, range }: &Query| index.watch(ray, *range, self.kind.any(), &mut counts);
         (self.queries.iter().map(answer).collect(), counts)
     }
+
+    /// Whether two indexes have answered alike: the same hits or, where any will do, a hit to the same rays.
+    pub fn agree(&self, a: &[Option<Hit>], b: &[Option<Hit>]) -> bool {
+        match self.kind.any() {
+            true => a.iter().map(Option::is_some).eq(b.iter().map(Option::is_some)),
+            false => a == b,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+    use lancer_core::scene::PrimitiveId;
+
+    use super::*;
+
+    #[test]
+    fn only_shadow_rays_may_be_stopped_by_different_primitives() {
+        let hit = |t, id| Some(Hit { t, primitive: PrimitiveId(id), barycentric: DVec3::ZERO });
+        for kind in Kind::ALL {
+            let rays = Rays { kind, queries: Vec::new() };
+            let first = [hit(1.0, 2), None];
+            assert!(rays.agree(&first, &first));
+            assert!(!rays.agree(&first, &[None, None]));
+            assert!(!rays.agree(&first, &first[..1]), "an answer is missing");
+            assert_eq!(rays.agree(&first, &[hit(1.0, 3), None]), kind == Kind::Shadow);
+            assert_eq!(
+                rays.agree(&first, &[hit(1.0_f64.next_up(), 2), None]),
+                kind == Kind::Shadow
+            );
+        }
+    }
 }
