@@ -141,6 +141,11 @@ pub fn run(args: &Args) -> Result<()> {
         scene.point_sources().len(),
     );
 
+    let expected = structure.expected_bytes(scene.primitives().len()) as f64 / f64::from(1 << 30);
+    if expected > 1.0 {
+        eprintln!("note: the index {} may take about {expected:.1} GiB", structure.name);
+    }
+
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(args.threads.into())
         .build()

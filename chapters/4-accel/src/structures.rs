@@ -9,6 +9,8 @@ use lancer_core::scene::Scene;
 pub struct Structure {
     /// Its name on the command line, which is the name of its colour too.
     pub name: &'static str,
+    /// About what it takes for each primitive where it takes most, among the chapter's kinds of scene.
+    pub bytes_per_primitive: usize,
     /// Builds it, with its default parameters, over all primitives of a scene.
     pub build: for<'s> fn(&'s Scene) -> Built<'s>,
 }
@@ -31,21 +33,51 @@ impl<'s> Built<'s> {
 
 /// All of them, the oracle first.
 pub const STRUCTURES: [Structure; 9] = [
-    Structure { name: "linear", build: |scene| Built::new(LinearScan::new(scene), |_| 0) },
-    Structure { name: "wide", build: |scene| Built::new(Wide::build(scene), Wide::memory) },
-    Structure { name: "bvh", build: |scene| Built::new(Bvh::build(scene), Bvh::memory) },
+    Structure {
+        name: "linear",
+        bytes_per_primitive: 0,
+        build: |scene| Built::new(LinearScan::new(scene), |_| 0),
+    },
+    Structure {
+        name: "wide",
+        bytes_per_primitive: 55,
+        build: |scene| Built::new(Wide::build(scene), Wide::memory),
+    },
+    Structure {
+        name: "bvh",
+        bytes_per_primitive: 66,
+        build: |scene| Built::new(Bvh::build(scene), Bvh::memory),
+    },
     Structure {
         name: "obvhs-bvh2",
+        bytes_per_primitive: 64,
         build: |scene| Built::new(ObvhsBvh2::build(scene), ObvhsBvh2::memory),
     },
     Structure {
         name: "obvhs-cwbvh",
+        bytes_per_primitive: 14,
         build: |scene| Built::new(ObvhsCwbvh::build(scene), ObvhsCwbvh::memory),
     },
-    Structure { name: "grid", build: |scene| Built::new(Grid::build(scene), Grid::memory) },
-    Structure { name: "octree", build: |scene| Built::new(Octree::build(scene), Octree::memory) },
-    Structure { name: "kd", build: |scene| Built::new(KdTree::build(scene), KdTree::memory) },
-    Structure { name: "bsp", build: |scene| Built::new(BspTree::build(scene), BspTree::memory) },
+    Structure {
+        name: "grid",
+        bytes_per_primitive: 21,
+        build: |scene| Built::new(Grid::build(scene), Grid::memory),
+    },
+    Structure {
+        name: "octree",
+        bytes_per_primitive: 76,
+        build: |scene| Built::new(Octree::build(scene), Octree::memory),
+    },
+    Structure {
+        name: "kd",
+        bytes_per_primitive: 43,
+        build: |scene| Built::new(KdTree::build(scene), KdTree::memory),
+    },
+    Structure {
+        name: "bsp",
+        bytes_per_primitive: 76,
+        build: |scene| Built::new(BspTree::build(scene), BspTree::memory),
+    },
 ];
 
 /// The structure of that name.
@@ -55,4 +87,31 @@ pub const STRUCTURES: [Structure; 9] = [
 pub fn structure(name: &str) -> Structure {
     let found = STRUCTURES.into_iter().find(|structure| structure.name == name);
     found.unwrap_or_else(|| panic!("no index is called {name:?}"))
+}
+
+impl Structure {
+    /// About how many bytes the index of so many primitives may take.
+    pub fn expected_bytes(&self, primitives: usize) -> usize {
+        self.bytes_per_primitive * primitives
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenes::FAMILIES;
+
+    /// What is said of the memory is what the worst kind of scene takes, within a quarter.
+    #[test]
+    fn the_memory_is_as_expected() {
+        let scenes = FAMILIES.map(|family| family.scene(30_000));
+        for structure in STRUCTURES.into_iter().filter(|structure| structure.name != "linear") {
+            let parts = scenes.iter().map(|scene| {
+                let expected = structure.expected_bytes(scene.primitives().len());
+                (structure.build)(scene).bytes as f64 / expected as f64
+            });
+            let most = parts.fold(0.0, f64::max);
+            assert!((0.75..1.25).contains(&most), "{}: {most}", structure.name);
+        }
+    }
 }

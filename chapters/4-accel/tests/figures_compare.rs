@@ -23,3 +23,21 @@ fn structures() {
         assert_ne!(row[4], "0", "a scene that no ray hits");
     }
 }
+
+/// 4.11: none of the indexes errs for any class of rays, on any of the three scenes; each of the naive ones does.
+#[test]
+fn agreement() {
+    let figure = FIGURES.iter().find(|figure| figure.id == "4.11").expect("a figure");
+    let finished = (figure.make)(Effort::Quick);
+    assert_eq!(finished.plate.verdict(), Verdict::Holds, "{}", finished.plate.claim());
+    assert_eq!(finished.plate.canvas().faults(), []);
+    let csv = finished.data.to_csv();
+    let rows: Vec<Vec<&str>> = csv.lines().skip(1).map(|row| row.split(',').collect()).collect();
+    let ours = |row: &&Vec<&str>| STRUCTURES.iter().any(|structure| row[0] == structure.name);
+    let (ours, naive): (Vec<_>, Vec<_>) = rows.iter().partition(ours);
+    assert_eq!(ours.len(), 3 * 8 * (STRUCTURES.len() - 1));
+    assert!(ours.iter().all(|row| row[3] == "0"), "{ours:?}");
+    for name in ["boxes without a pad", "first hit in a cell wins"] {
+        assert!(naive.iter().any(|row| row[0] == name && row[3] != "0"), "{name}");
+    }
+}

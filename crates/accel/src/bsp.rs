@@ -105,9 +105,9 @@ impl Default for BspBuilder {
 
 /// A cell with so few primitives is not divided.
 const LEAF: usize = 4;
-/// So many primitives of a cell, equidistant in its list, are asked for their planes.
+/// So many primitives of a cell, spread over its list, are asked for their planes.
 const ASKED: usize = 8;
-/// So many, equidistant too, tell what a plane is worth.
+/// So many, spread in the same way, tell what a plane is worth.
 const JUDGES: usize = 128;
 /// A cut polygon weighs this much more than one on the fuller side.
 const CUT: usize = 2;
@@ -234,10 +234,9 @@ impl BspBuilder {
 
     /// The plane that parts the pieces best, if there is a plane.
     fn best_plane(&self, pieces: &[Piece], tolerance: f64) -> Option<Plane> {
-        let some = |count: usize| pieces.iter().step_by(pieces.len().div_ceil(count));
         let score = |plane: &Plane| {
             let (mut behind, mut front, mut cut) = (0_usize, 0_usize, 0);
-            for piece in some(JUDGES) {
+            for piece in spread(pieces, JUDGES) {
                 match side(&piece.shape, plane, tolerance) {
                     Side::Behind => behind += 1,
                     Side::Within => {}
@@ -247,7 +246,7 @@ impl BspBuilder {
             }
             behind.max(front) + CUT * cut
         };
-        some(ASKED).flat_map(|piece| self.planes_of(&piece.shape)).min_by_key(score)
+        spread(pieces, ASKED).flat_map(|piece| self.planes_of(&piece.shape)).min_by_key(score)
     }
 
     fn planes_of(&self, shape: &Shape) -> SmallVec<[Plane; 4]> {
@@ -273,6 +272,17 @@ impl BspBuilder {
             }
         }
     }
+}
+
+/// At most `count` pieces from all over the list: all of a short one, and multiples of the golden ratio of
+/// a long one. Equidistant ones would all be the same part of each house in a town.
+fn spread(pieces: &[Piece], count: usize) -> impl Iterator<Item = &Piece> {
+    const GOLDEN: f64 = 0.618_033_988_749_895;
+    let is_short = pieces.len() <= count;
+    (0..count.min(pieces.len())).map(move |k| {
+        let place = (k as f64 * GOLDEN).fract() * pieces.len() as f64;
+        &pieces[if is_short { k } else { place as usize }]
+    })
 }
 
 fn side(shape: &Shape, plane: &Plane, tolerance: f64) -> Side {
