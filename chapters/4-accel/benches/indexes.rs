@@ -49,7 +49,7 @@ fn measure(criterion: &mut Criterion, name: &str, scene: &Scene) {
     let triangles = scene.mesh.triangles.len() as u64;
     let mut group = criterion.benchmark_group(format!("{name}/build"));
     group.throughput(Throughput::Elements(triangles)).sample_size(10);
-    for Structure { name, build } in indexes() {
+    for Structure { name, build, .. } in indexes() {
         group.bench_function(*name, |bencher| bencher.iter(|| black_box(build(scene).bytes)));
     }
     group.finish();

@@ -1,7 +1,7 @@
 //! Indexes as they are often written, and what they lose: the rivals of plate 4.11.
 
 use chapter_1::naive::min_max_box;
-use glam::Vec3A;
+use glam::{DVec3, Vec3A};
 use lancer_accel::Grid;
 use lancer_core::geometry::{Bounds3, Interval, Ray};
 use lancer_core::intersector::{Hit, Probe};
@@ -101,7 +101,7 @@ impl LibraryWalk {
     pub fn build(scene: &Scene) -> Self {
         let triangles: Vec<Triangle> = (0..scene.mesh.triangles.len())
             .map(|index| {
-                let [v0, v1, v2] = scene.mesh.corners(index).map(|corner| corner.as_vec3a());
+                let [v0, v1, v2] = scene.mesh.corners(index).map(DVec3::as_vec3a);
                 Triangle { v0, v1, v2 }
             })
             .collect();
@@ -114,7 +114,7 @@ impl LibraryWalk {
 
     /// The ray parameter of the closest hit, as far as it is found.
     pub fn closest_hit(&self, ray: &Ray) -> Option<f32> {
-        let [origin, direction]: [Vec3A; 2] = [ray.origin, ray.direction].map(|v| v.as_vec3a());
+        let [origin, direction]: [Vec3A; 2] = [ray.origin, ray.direction].map(DVec3::as_vec3a);
         let ray = obvhs::ray::Ray::new(origin, direction, 0.0, f32::MAX);
         let mut hit = RayHit::none();
         self.tree.ray_traverse(ray, &mut hit, |ray, id| self.triangles[id].intersect(ray));
