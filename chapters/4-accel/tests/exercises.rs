@@ -64,7 +64,7 @@ fn a_stub_names_its_cards_slide() {
     }
 }
 
-/// A slip in the picture's functions shows in the picture.
+/// Whoever draws it, and however often: what differs from it is the student's own.
 #[test]
 fn a_picture_is_the_same_every_time() {
     for exercise in COURSE.exercises {
