@@ -89,14 +89,14 @@ fn before_anything_is_begun_there_is_no_folder() {
     assert!(line.contains("E1.6") && line.ends_with("10 min  new"), "{list}");
     assert_eq!(list.matches('→').count(), 1, "{list}");
     assert_snapshot!(student.failed(&["check"]), @"error: no exercise is begun; begin with: cargo xtask exercise start");
-    assert_snapshot!(student.failed(&["show", "6"]), @"error: E1.6 reflected-ray: there is no file work/chapter-1/src/e06_reflected_ray.rs; make it with: cargo xtask exercise start reflected-ray");
+    assert_snapshot!(student.failed(&["show", "1.6"]), @"error: E1.6 reflected-ray: there is no file work/chapter-1/src/e06_reflected_ray.rs; make it with: cargo xtask exercise start reflected-ray");
     assert!(!student.path("work").exists());
 }
 
 #[test]
 fn a_start_says_what_to_do_and_never_overwrites() {
     let student = Student::new();
-    assert_snapshot!(student.accepted(&["start", "6"]), @r"
+    assert_snapshot!(student.accepted(&["start", "1.6"]), @r"
     E1.6 reflected-ray: The mirror ray (about 10 minutes)
       Slide    « Reflets spéculaires : calcul du rayon réfléchi »
       Lesson   chapters/1-whitted/README.md, « Reflets spéculaires : calcul du rayon réfléchi, du rayon réfracté (mirror and refracted rays) »
@@ -116,18 +116,18 @@ fn a_start_says_what_to_do_and_never_overwrites() {
 #[test]
 fn a_new_stub_replaces_an_untouched_one_only() {
     let student = Student::new();
-    student.accepted(&["start", "6"]);
+    student.accepted(&["start", "1.6"]);
     let begun_with = "work/.stubs/chapter-1/e06_reflected_ray.rs";
     for name in [FILE, begun_with] {
         student.write(name, "the stub of another version");
     }
-    let renewed = student.accepted(&["start", "6"]);
+    let renewed = student.accepted(&["start", "1.6"]);
     assert!(renewed.contains("Its stub is a new one"), "{renewed}");
     assert_eq!((student.read(FILE), student.read(begun_with)), (stub(), stub()));
 
     student.write(begun_with, "the stub of another version");
     student.write(FILE, "mine");
-    let kept = student.accepted(&["start", "6"]);
+    let kept = student.accepted(&["start", "1.6"]);
     assert!(kept.contains("The course's stub has changed since you began"), "{kept}");
     assert!(kept.contains("compare chapters/1-whitted/stubs/e06_reflected_ray.rs"), "{kept}");
     assert_eq!(student.read(FILE), "mine");
@@ -136,7 +136,7 @@ fn a_new_stub_replaces_an_untouched_one_only() {
 #[test]
 fn what_is_generated_is_made_again_and_the_students_files_stay() {
     let student = Student::new();
-    student.accepted(&["start", "6"]);
+    student.accepted(&["start", "1.6"]);
     let generated =
         ["work/Cargo.toml", "work/chapter-1/Cargo.toml", MAIN, "work/.cargo/config.toml"];
     let before = generated.map(|name| student.read(name));
@@ -145,7 +145,7 @@ fn what_is_generated_is_made_again_and_the_students_files_stay() {
         student.write(name, "of an older version");
     }
     fs::remove_file(student.path("work/Cargo.lock")).unwrap();
-    student.accepted(&["start", "6"]);
+    student.accepted(&["start", "1.6"]);
     assert_eq!(generated.map(|name| student.read(name)), before);
     assert!(student.path("work/Cargo.lock").exists());
     assert_eq!(student.read(FILE), "mine");
@@ -154,15 +154,15 @@ fn what_is_generated_is_made_again_and_the_students_files_stay() {
 #[test]
 fn a_reset_keeps_every_answer() {
     let student = Student::new();
-    student.accepted(&["start", "6"]);
+    student.accepted(&["start", "1.6"]);
     for (answer, backup) in [("first", ".bak"), ("second", ".bak2"), ("third", ".bak3")] {
         student.write(FILE, answer);
-        let said = student.accepted(&["reset", "6"]);
+        let said = student.accepted(&["reset", "1.6"]);
         assert!(said.ends_with(&format!("Your file is kept as {FILE}{backup}\n")), "{said}");
         assert_eq!(student.read(&format!("{FILE}{backup}")), answer);
         assert_eq!(student.read(FILE), stub());
     }
-    student.accepted(&["reset", "6"]);
+    student.accepted(&["reset", "1.6"]);
     assert!(!student.path(&format!("{FILE}.bak4")).exists());
 }
 
@@ -170,7 +170,7 @@ fn a_reset_keeps_every_answer() {
 fn a_folder_that_cannot_be_used_is_one_error() {
     let student = Student::new();
     student.write("work", "a file");
-    for arguments in [&["start"][..], &["list"], &["check"], &["watch"], &["reset", "6"]] {
+    for arguments in [&["start"][..], &["list"], &["check"], &["watch"], &["reset", "1.6"]] {
         let said = student.failed(arguments).replace(&*student.folder.path().to_string_lossy(), "");
         assert_eq!(
             said,
@@ -180,7 +180,7 @@ fn a_folder_that_cannot_be_used_is_one_error() {
     assert_eq!(student.read("work"), "a file");
 
     let output =
-        student.command(&["start", "6"]).env("LANCER_WORK", "work/below").output().unwrap();
+        student.command(&["start", "1.6"]).env("LANCER_WORK", "work/below").output().unwrap();
     let error = text(&output.stderr);
     assert_eq!(error.lines().count(), 1, "{error}");
     assert!(error.starts_with("error: cannot make the folder "), "{error}");
@@ -195,22 +195,22 @@ fn unknown_exercises_and_hints_are_refused() {
         assert_eq!(said.lines().count(), 1, "{said}");
     }
     for n in ["0", "4", "x"] {
-        assert_eq!(student.output(&["hint", "6", "-n", n]).status.code(), Some(2), "{n}");
+        assert_eq!(student.output(&["hint", "1.6", "-n", n]).status.code(), Some(2), "{n}");
     }
 }
 
 #[test]
 fn there_are_three_hints_and_an_answer() {
     let student = Student::new();
-    assert_snapshot!(student.accepted(&["hint", "6"]), @r"
+    assert_snapshot!(student.accepted(&["hint", "1.6"]), @r"
     E1.6 reflected-ray, hint 1 of 3: Split V into a part along N and a part along the surface. A mirror turns one of them around.
     More: cargo xtask exercise hint reflected-ray -n 2
     ");
-    assert_snapshot!(student.accepted(&["hint", "6", "-n", "3"]), @r"
+    assert_snapshot!(student.accepted(&["hint", "1.6", "-n", "3"]), @r"
     E1.6 reflected-ray, hint 3 of 3: `n.dot(incident)` is N·V; take twice that many `n` away from `incident`.
     The course's own answer: cargo xtask exercise solution reflected-ray
     ");
-    let solution = student.accepted(&["solution", "6"]);
+    let solution = student.accepted(&["solution", "1.6"]);
     let mut lines = solution.lines();
     assert_eq!(lines.next(), Some("E1.6 reflected-ray: you have not begun this one"));
     assert!(lines.next().unwrap().starts_with("The course's is in crates/core/src/optics.rs:"));
@@ -229,7 +229,7 @@ fn every_proof_of_the_checks_holds() {
 #[ignore = "compiles the course once more"]
 fn a_student_goes_wrong_in_many_ways_and_then_right() {
     let student = Student::new();
-    student.accepted(&["start", "6"]);
+    student.accepted(&["start", "1.6"]);
     assert_snapshot!(student.failed(&["check"]), @r"
     E1.6 reflected-ray: The mirror ray
       ✗ 45 degrees onto a floor
@@ -238,7 +238,7 @@ fn a_student_goes_wrong_in_many_ways_and_then_right() {
     assert!(student.accepted(&["list"]).contains("started"));
 
     student.answer("incident - n.dot(incident) * n");
-    assert_snapshot!(student.failed(&["check", "6"]), @r"
+    assert_snapshot!(student.failed(&["check", "1.6"]), @r"
     E1.6 reflected-ray: The mirror ray
       ✗ 45 degrees onto a floor
           case    incident (0.6, -0.8, 0) (towards the surface), N (0, 1, 0)
@@ -303,10 +303,10 @@ fn a_student_goes_wrong_in_many_ways_and_then_right() {
     The course's own answer: cargo xtask exercise solution reflected-ray
     ");
     assert!(student.accepted(&["list"]).contains("passing"));
-    student.accepted(&["start", "7"]);
+    student.accepted(&["start", "1.7"]);
     let said = student.failed(&["check"]);
     assert!(said.starts_with("Right: E1.6\nE1.7 refracted-ray: "), "{said}");
-    let shown = student.accepted(&["show", "6"]);
+    let shown = student.accepted(&["show", "1.6"]);
     assert!(
         shown
             .ends_with("Your picture is the reference's.\nThe plate is in work/figures/E1.6.png\n")
@@ -314,12 +314,12 @@ fn a_student_goes_wrong_in_many_ways_and_then_right() {
     assert!(fs::read(student.path("work/figures/E1.6.png")).unwrap().starts_with(b"\x89PNG"));
     assert!(
         student
-            .accepted(&["solution", "6"])
+            .accepted(&["solution", "1.6"])
             .starts_with(&format!("E1.6 reflected-ray: yours is in {FILE}\n"))
     );
 
     fs::remove_file(student.path(FILE)).unwrap();
-    let gone = student.failed(&["check", "6"]);
+    let gone = student.failed(&["check", "1.6"]);
     assert!(gone.contains("make it with: cargo xtask exercise start reflected-ray"), "{gone}");
     watches(&student);
 }
@@ -329,9 +329,9 @@ fn watches(student: &Student) {
     use std::io::{BufRead, BufReader};
     use std::process::Stdio;
 
-    student.accepted(&["start", "6"]);
+    student.accepted(&["start", "1.6"]);
     let mut child = student
-        .command(&["watch", "6"])
+        .command(&["watch", "1.6"])
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
         .spawn()
