@@ -372,7 +372,9 @@ impl<'s> KdTree<'s> {
         let mut stack = Stack::new();
         let mut index = 0;
         loop {
-            observer.region(&|| self.cell(index));
+            // A copy: what is borrowed would live in memory even when nobody watches.
+            let here = index;
+            observer.region(&|| self.cell(here));
             observer.cell_visit();
             match self.nodes[index] {
                 Node::Inner { axis, above, split } => {

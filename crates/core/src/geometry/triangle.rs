@@ -79,7 +79,7 @@ pub struct TriangleHit {
 /// bound (Pharr, Jakob, Humphreys, *Physically Based Rendering*, 4th ed., §6.8.7, with the shear's own term
 /// kept apart) is what lets rays leave a surface without a global epsilon; see [`super::leave_surface`].
 #[doc(alias = "eq:ray-triangle")]
-#[inline]
+#[inline(always)] // Returned through memory its result costs as much again as the test.
 pub fn intersect_triangle(corners: [DVec3; 3], ray: &Ray, shear: &Shear) -> Option<TriangleHit> {
     let [a, b, c] = corners.map(|corner| (corner - ray.origin).to_array());
     match shear.axis {
