@@ -19,8 +19,7 @@ use crate::rays::{Kind, Rays};
 use crate::scenes::family;
 use crate::structures::{STRUCTURES, structure};
 
-const NAIVE: [&str; 3] =
-    ["boxes without a pad", "first hit in a cell wins", "obvhs' own walk, f32"];
+const NAIVE: [&str; 3] = ["boxes without a pad", "first hit in a cell wins", "obvhs' own f32 walk"];
 
 /// Answers of one contender to the rays of one class.
 struct Case {
