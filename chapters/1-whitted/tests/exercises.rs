@@ -1,9 +1,10 @@
 //! The exercises of the chapter prove themselves: the right answer passes every check, an untouched stub
 //! passes none, every known slip is caught by the check that names it and looks like no other.
 
+use std::path::Path;
+
 use chapter_1::exercises::prelude::{DVec3, Meeting, Ray};
 use chapter_1::exercises::{COURSE, Subject};
-use lancer_exercise::{Solution, Verified, passed_by_stub};
 
 /// What the later stubs call: in a student's workspace, their own functions.
 mod yours {
@@ -43,38 +44,17 @@ const STUB: Subject = Subject {
 
 #[test]
 fn the_reference_passes_and_every_slip_is_caught() {
-    for exercise in COURSE.exercises {
-        let verified = Verified::of(exercise, COURSE.reference);
-        assert_eq!(verified.reference_fails, [""; 0], "{}", verified.name);
-        assert!(verified.proofs.len() >= 3, "{}: three slips", verified.name);
-        for proof in &verified.proofs {
-            assert_eq!(proof.twin, None, "{}: {}", verified.name, proof.says);
-            assert!(
-                proof.holds(&verified.checks),
-                "{}: {}: {:?}",
-                verified.name,
-                proof.says,
-                proof.caught
-            );
-        }
-    }
+    COURSE.prove_checks();
 }
 
 #[test]
-fn an_untouched_stub_passes_no_check() {
-    for exercise in COURSE.exercises {
-        assert_eq!(passed_by_stub(exercise, STUB), [""; 0], "{}", exercise.card.name);
-    }
+fn an_untouched_stub_passes_no_check_and_names_its_slide() {
+    COURSE.prove_stubs(STUB);
 }
 
 #[test]
-fn a_stub_names_its_cards_slide() {
-    for exercise in COURSE.exercises {
-        let card = exercise.card;
-        let first = card.stub.lines().next().unwrap();
-        let wanted = (format!("//! {} ", card.id), format!(" Slide « {} ».", card.slide));
-        assert!(first.starts_with(&wanted.0) && first.ends_with(&wanted.1), "{first}");
-    }
+fn every_solution_stands_where_its_card_says() {
+    COURSE.prove_solutions(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")));
 }
 
 /// The third hint's triangle test takes every t > 0, whose noise the course's own cuts off.
@@ -107,17 +87,6 @@ fn hinted_triangle(corners: [DVec3; 3], ray: &Ray) -> Option<Meeting> {
     let det = u + v + w;
     let t = (u * a.z + v * b.z + w * c.z) / det;
     (t > 0.0 && t.is_finite()).then(|| (t, DVec3::new(u, v, w) / det))
-}
-
-#[test]
-fn every_solution_stands_where_its_card_says() {
-    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
-    for exercise in COURSE.exercises {
-        let Solution { file, item, .. } = exercise.card.solution;
-        let text = std::fs::read_to_string(format!("{root}/{file}")).unwrap();
-        let is_there = text.lines().any(|line| line.trim_start().starts_with(item));
-        assert!(is_there, "{}: no `{item}` in {file}", exercise.card.name);
-    }
 }
 
 #[test]

@@ -3,33 +3,15 @@
 //! What the claims rest on (counts and errors) is the same on every machine; seconds are not looked at.
 
 use chapter_1::figures::FIGURES;
-use lancer_figure::{Effort, Finished, Verdict};
+use lancer_figure::{Figure, Finished, Record};
 
 fn made(id: &str) -> Finished {
-    let figure = FIGURES.iter().find(|figure| figure.id == id).expect("a figure of the chapter");
-    let finished = (figure.make)(Effort::Quick);
-    assert_eq!(finished.plate.id(), id);
-    assert_eq!(finished.plate.verdict(), Verdict::Holds, "{}", finished.plate.claim());
-    assert_eq!(finished.plate.canvas().faults(), [], "{id}: text overlaps or leaves the plate");
-    finished
+    Figure::proved(FIGURES, id)
 }
 
-/// The rows of a figure's data as (column, value) pairs; no cell of the chapter holds a comma.
-fn rows(finished: &Finished) -> Vec<Vec<(String, String)>> {
-    let csv = finished.data.to_csv();
-    assert!(!csv.contains('"'), "a quoted cell");
-    let mut lines = csv.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
-    let header = lines.next().expect("a header");
-    lines.map(|row| header.iter().cloned().zip(row).collect()).collect()
-}
-
-fn field<'a>(row: &'a [(String, String)], column: &str) -> &'a str {
-    let found = row.iter().find(|(name, _)| name == column);
-    &found.unwrap_or_else(|| panic!("no column {column}")).1
-}
-
-fn value(row: &[(String, String)], column: &str) -> f64 {
-    field(row, column).parse().expect("a number")
+/// The rows of a figure's data.
+fn rows(finished: &Finished) -> Vec<Record> {
+    finished.data.records()
 }
 
 #[test]
@@ -45,10 +27,10 @@ fn ids_and_names_are_unique() {
 fn quadratic() {
     let rows = rows(&made("0.1"));
     let lost = |name: &str| -> f64 {
-        assert!(rows.iter().any(|row| field(row, "solver") == name));
+        assert!(rows.iter().any(|row| row.text("solver") == name));
         rows.iter()
-            .filter(|row| field(row, "solver") == name)
-            .map(|row| value(row, "lost_of_96"))
+            .filter(|row| row.text("solver") == name)
+            .map(|row| row.number("lost_of_96"))
             .sum()
     };
     assert_eq!(lost("stable f64"), 0.0);
@@ -62,11 +44,11 @@ fn acne() {
     let rows = rows(&made("0.2"));
     let site = |offset: &str, away: f64, exponent: i32| -> [f64; 2] {
         let row = rows.iter().find(|row| {
-            let here = value(row, "scale") == 10.0_f64.powi(exponent);
-            field(row, "offset") == offset && value(row, "sizes_away") == away && here
+            let here = row.number("scale") == 10.0_f64.powi(exponent);
+            row.text("offset") == offset && row.number("sizes_away") == away && here
         });
         let row = row.unwrap_or_else(|| panic!("no row {offset} {away} {exponent}"));
-        ["wrongly_dark", "wrongly_bright"].map(|column| value(row, column))
+        ["wrongly_dark", "wrongly_bright"].map(|column| row.number(column))
     };
     for away in [0.0, 1e6] {
         assert!((-3..=6).all(|exponent| site("error bound", away, exponent) == [0.0; 2]));
@@ -92,8 +74,8 @@ fn acne() {
 fn watertight() {
     let finished = made("0.3");
     for row in rows(&finished) {
-        let leaks = value(&row, "leaking rays (%)");
-        match (field(&row, "method"), field(&row, "knob")) {
+        let leaks = row.number("leaking rays (%)");
+        match (row.text("method"), row.text("knob")) {
             ("watertight", _) | (_, "random directions") => assert_eq!(leaks, 0.0),
             ("Möller-Trumbore", _) => assert!(leaks > 2.0, "{row:?}"),
             _ => (),
@@ -109,13 +91,13 @@ fn slab() {
     let rows = rows(&made("0.4"));
     let share = |question: &str, class: &str, form: &str| {
         let row = rows.iter().find(|row| {
-            ["question", "class", "form"].map(|c| field(row, c)) == [question, class, form]
+            ["question", "class", "form"].map(|c| row.text(c)) == [question, class, form]
         });
         let row = row.unwrap_or_else(|| panic!("no row {question} {class} {form}"));
-        value(row, "wrong") / value(row, "rays")
+        row.number("wrong") / row.number("rays")
     };
-    for row in rows.iter().filter(|row| field(row, "form") == "ours") {
-        assert!(field(row, "question") == "false hit" || value(row, "wrong") == 0.0, "{row:?}");
+    for row in rows.iter().filter(|row| row.text("form") == "ours") {
+        assert!(row.text("question") == "false hit" || row.number("wrong") == 0.0, "{row:?}");
     }
     for class in ["in a face plane +0", "in a face plane −0"] {
         assert_eq!(share("false miss", class, "min/max"), 1.0);
@@ -137,7 +119,7 @@ fn slab() {
 fn safety() {
     let rows = rows(&made("0.5"));
     let forms: Vec<(&str, f64)> =
-        rows.iter().map(|row| (field(row, "knob"), value(row, "wrong per million"))).collect();
+        rows.iter().map(|row| (row.text("knob"), row.number("wrong per million"))).collect();
     let wrong = |form: &str| forms.iter().find(|(name, _)| *name == form).expect("a form").1;
     for robust in ["watertight", "stable", "slabs", "error bound"] {
         assert_eq!(wrong(robust), 0.0, "{robust}");
@@ -156,23 +138,23 @@ fn safety() {
 fn visible() {
     let rows = rows(&made("1.1"));
     for row in &rows {
-        let wrong = value(row, "wrong_pixels_percent");
-        assert_eq!(field(row, "method").starts_with("rays"), wrong == 0.0, "{row:?}");
+        let wrong = row.number("wrong_pixels_percent");
+        assert_eq!(row.text("method").starts_with("rays"), wrong == 0.0, "{row:?}");
     }
     // A crossing of two strips is a parallelogram: the product of their widths over the sine between them.
     let percent_of_picture = 100.0 / 8.0;
     let crossing = 0.34 * 0.34 / (std::f64::consts::TAU / 6.0).sin() * percent_of_picture;
     let sheets = 0.5 * 0.72 * 0.72 / 1.4_f64.sin() * percent_of_picture;
     let with_crossings = |count: f64| {
-        let orders = rows.iter().filter(|row| field(row, "method") == "an order");
+        let orders = rows.iter().filter(|row| row.text("method") == "an order");
         let near = |wrong: f64| (wrong - count * crossing - sheets).abs() < 0.3;
-        orders.filter(|row| near(value(row, "wrong_pixels_percent"))).count()
+        orders.filter(|row| near(row.number("wrong_pixels_percent"))).count()
     };
     assert_eq!((with_crossings(1.0), with_crossings(2.0)), (60, 60));
     // The painter looks only where its polygons are.
     let tests = |method: &str| -> Vec<f64> {
-        let rows = rows.iter().filter(|row| field(row, "method") == method);
-        rows.map(|row| value(row, "tests")).collect()
+        let rows = rows.iter().filter(|row| row.text("method") == method);
+        rows.map(|row| row.number("tests")).collect()
     };
     let (painter, tree) = (tests("painter: centroid"), tests("rays: tree"));
     assert!(painter.iter().zip(&tree).all(|(painter, tree)| painter < tree));
@@ -182,7 +164,7 @@ fn visible() {
 #[test]
 fn local_model() {
     let means: Vec<f64> =
-        rows(&made("1.2")).iter().map(|row| value(row, "mean_radiance")).collect();
+        rows(&made("1.2")).iter().map(|row| row.number("mean_radiance")).collect();
     let [ambient, diffuse, specular, shadows, reflection, refraction] = means[..] else {
         panic!("six terms")
     };
@@ -197,17 +179,17 @@ fn inverse_square() {
     let rows = rows(&made("1.4"));
     let at = |lamp: &str, distance: f64, points: f64| {
         let found = rows.iter().find(|row| {
-            (field(row, "lamp"), value(row, "distance"), value(row, "points"))
+            (row.text("lamp"), row.number("distance"), row.number("points"))
                 == (lamp, distance, points)
         });
         found.expect("a row")
     };
-    assert!((value(at("point", 64.0, 1.0), "radiance") * 4096.0 - 1.0).abs() < 1e-13);
+    assert!((at("point", 64.0, 1.0).number("radiance") * 4096.0 - 1.0).abs() < 1e-13);
     let square = at("square", 1.0, 1.0);
     let exact = 0.752274688454107 / std::f64::consts::PI;
-    assert!((value(square, "exact") / exact - 1.0).abs() < 1e-13);
-    assert!((value(square, "radiance") * std::f64::consts::PI - 1.0).abs() < 1e-12);
-    assert!(value(at("square", 1.0, 4.0), "error") < 0.3 * value(square, "error"));
+    assert!((square.number("exact") / exact - 1.0).abs() < 1e-13);
+    assert!((square.number("radiance") * std::f64::consts::PI - 1.0).abs() < 1e-12);
+    assert!(at("square", 1.0, 4.0).number("error") < 0.3 * square.number("error"));
 }
 
 /// 1.3, eq:local: the widths of the closed form, (cos θ)ⁿ = ½, are within what the pictures allow, and the
@@ -217,16 +199,16 @@ fn exponent() {
     let rows = rows(&made("1.3"));
     assert_eq!(rows.len(), 7);
     for row in &rows {
-        let n = value(row, "n");
-        let within = |angle: &str| value(row, angle).cos().powf(n);
+        let n = row.number("n");
+        let within = |angle: &str| row.number(angle).cos().powf(n);
         // The wider the angle the less is left there.
         assert!(within("greatest") <= 0.5 && 0.5 <= within("least"), "{row:?}");
         let light = std::f64::consts::TAU / (n + 1.0);
-        assert!((value(row, "integral") / light - 1.0).abs() < 1e-4, "{row:?}");
+        assert!((row.number("integral") / light - 1.0).abs() < 1e-4, "{row:?}");
     }
     // 60 degrees, the one half-width that everybody knows, to a hundredth.
-    let first = value(&rows[0], "half_width").to_degrees();
-    assert_eq!(value(&rows[0], "n"), 1.0);
+    let first = rows[0].number("half_width").to_degrees();
+    assert_eq!(rows[0].number("n"), 1.0);
     assert!((first - 60.0).abs() < 0.6, "{first}");
 }
 
@@ -237,9 +219,9 @@ fn descartes() {
     let out = |n1: f64, n2: f64, degrees: f64| {
         let rows = rows(&finished);
         let row = rows.iter().find(|row| {
-            (value(row, "n1"), value(row, "n2"), value(row, "degrees_in")) == (n1, n2, degrees)
+            (row.number("n1"), row.number("n2"), row.number("degrees_in")) == (n1, n2, degrees)
         });
-        value(row.expect("a row"), "degrees_out")
+        row.expect("a row").number("degrees_out")
     };
     assert!((out(1.0, 1.5, 30.0) - 19.4712206344907).abs() < 1e-12);
     assert!((out(1.0, 1.5, 60.0) - 35.2643896827547).abs() < 1e-12);
@@ -250,18 +232,18 @@ fn descartes() {
 #[test]
 fn ray_tree() {
     let rows = rows(&made("1.6"));
-    assert!(rows.len() >= 8 && field(&rows[0], "kind") == "primary");
+    assert!(rows.len() >= 8 && rows[0].text("kind") == "primary");
     for row in &rows[1..] {
-        let parent = &rows[value(row, "parent") as usize];
-        assert_eq!(value(row, "depth"), value(parent, "depth") + 1.0);
-        assert!(value(row, "weight") < value(parent, "weight"));
-        let share = value(row, "weight") / value(parent, "weight");
-        let of_glass = if field(row, "kind") == "refracted" { 0.9 } else { 0.1 };
-        if field(parent, "end") == "glass" {
+        let parent = &rows[row.number("parent") as usize];
+        assert_eq!(row.number("depth"), parent.number("depth") + 1.0);
+        assert!(row.number("weight") < parent.number("weight"));
+        let share = row.number("weight") / parent.number("weight");
+        let of_glass = if row.text("kind") == "refracted" { 0.9 } else { 0.1 };
+        if parent.text("end") == "glass" {
             assert!((share - of_glass).abs() < 1e-12);
         }
     }
-    let ends: Vec<&str> = rows.iter().map(|row| field(row, "end")).collect();
+    let ends: Vec<&str> = rows.iter().map(|row| row.text("end")).collect();
     for wanted in ["glass", "mirror", "plastic", "floor", "background", "cut"] {
         assert!(ends.contains(&wanted), "no ray ends at {wanted}");
     }
@@ -273,15 +255,15 @@ fn ray_tree() {
 fn depth() {
     let rows = rows(&made("1.7"));
     let curve =
-        |name: &str| -> Vec<_> { rows.iter().filter(|row| field(row, "method") == name).collect() };
+        |name: &str| -> Vec<_> { rows.iter().filter(|row| row.text("method") == name).collect() };
     let (black, background) = (curve("black"), curve("background"));
     for pair in black.windows(2) {
-        assert!(value(pair[1], "rays") > value(pair[0], "rays"));
-        assert!(value(pair[1], "mean_abs") < value(pair[0], "mean_abs"));
+        assert!(pair[1].number("rays") > pair[0].number("rays"));
+        assert!(pair[1].number("mean_abs") < pair[0].number("mean_abs"));
     }
     for (a, b) in black.iter().zip(&background) {
-        assert_eq!(field(a, "rays"), field(b, "rays"));
-        assert_eq!(field(a, "weight_left"), field(b, "weight_left"));
+        assert_eq!(a.text("rays"), b.text("rays"));
+        assert_eq!(a.text("weight_left"), b.text("weight_left"));
     }
 }
 
@@ -292,8 +274,8 @@ fn indirect() {
     let rows = rows(&made("1.9"));
     let last = rows.last().expect("the most light rays");
     for row in &rows {
-        if field(row, "method") == "Whitted" {
-            assert_eq!(value(row, "mirrored_light"), 0.0);
+        if row.text("method") == "Whitted" {
+            assert_eq!(row.number("mirrored_light"), 0.0);
         }
     }
     // A rectangle's solid angle, from its corners seen along its normal, 1.9 away.
@@ -302,8 +284,8 @@ fn indirect() {
     let exact = corner(x[1], y[1]) - corner(x[0], y[1]) - corner(x[1], y[0]) + corner(x[0], y[0]);
     // Means of 65536 light rays, whose standard deviations are below their means and below twice their
     // means: 5 deviations are a false alarm in a million.
-    assert!((value(last, "solid_angle") / exact - 1.0).abs() < 5.0 / 256.0);
-    assert!((value(last, "mirrored_light") - 1.0).abs() < 5.0 * 2.0 / 256.0);
+    assert!((last.number("solid_angle") / exact - 1.0).abs() < 5.0 / 256.0);
+    assert!((last.number("mirrored_light") - 1.0).abs() < 5.0 * 2.0 / 256.0);
 }
 
 /// 1.10, eq:ambient: in a sphere of reflectance ρ with its lamp in the centre, all light is 1 / (1 − ρ) times
@@ -313,8 +295,8 @@ fn diffuse() {
     let rows = rows(&made("1.10"));
     for (rho, total) in [("sphere 0.1", 10.0 / 9.0), ("sphere 0.5", 2.0), ("sphere 0.9", 10.0)] {
         let method = |name: &str| {
-            let found = rows.iter().rfind(|row| field(row, "method") == name);
-            value(found.expect("a method"), rho)
+            let found = rows.iter().rfind(|row| row.text("method") == name);
+            found.expect("a method").number(rho)
         };
         assert!((method("Whitted without I_a") - 1.0).abs() < 1e-7);
         assert!((method("Whitted with the best I_a") / total - 1.0).abs() < 1e-7);
@@ -329,29 +311,29 @@ fn diffuse() {
 #[test]
 fn pruning() {
     let rows = rows(&made("1.8"));
-    for curve in rows.chunk_by(|a, b| field(a, "method") == field(b, "method")) {
-        let rule = field(&curve[0], "method");
+    for curve in rows.chunk_by(|a, b| a.text("method") == b.text("method")) {
+        let rule = curve[0].text("method");
         for pair in curve.windows(2) {
-            assert!(value(&pair[1], "rays") >= value(&pair[0], "rays"), "{pair:?}");
+            assert!(pair[1].number("rays") >= pair[0].number("rays"), "{pair:?}");
             if rule != "roulette" {
-                assert!(value(&pair[1], "RMSE") <= value(&pair[0], "RMSE"), "{pair:?}");
-                let (before, after) = (value(&pair[0], "bias"), value(&pair[1], "bias"));
+                assert!(pair[1].number("RMSE") <= pair[0].number("RMSE"), "{pair:?}");
+                let (before, after) = (pair[0].number("bias"), pair[1].number("bias"));
                 // The reference itself lacks the rays of weights below 10⁻⁶, which a deep tree has.
                 assert!(before <= after && after < 1e-6, "{pair:?}");
             }
         }
         if rule == "roulette" {
-            assert!(value(&curve[0], "z").abs() < 6.08);
+            assert!(curve[0].number("z").abs() < 6.08);
         }
     }
     // 14 rays of the weight are worth more than the depth's 16 among the glass balls.
     let error = |method: &str, knob: &str| {
         let row = rows.iter().find(|row| {
-            [field(row, "scene"), field(row, "method"), field(row, "knob")]
+            [row.text("scene"), row.text("method"), row.text("knob")]
                 == ["27 glass balls", method, knob]
         });
         let row = row.expect("a row");
-        (value(row, "rays"), value(row, "RMSE"))
+        (row.number("rays"), row.number("RMSE"))
     };
     let (depth, weight) = (error("depth", "4"), error("weight", "0.05"));
     assert!(weight.0 < depth.0 && weight.1 < 0.2 * depth.1);
@@ -363,8 +345,8 @@ fn aliasing() {
     let rows = rows(&made("1.11"));
     for curve in rows.chunks(4) {
         for pair in curve.windows(2) {
-            assert_eq!(value(&pair[1], "samples"), 4.0 * value(&pair[0], "samples"));
-            assert!(value(&pair[1], "RMSE") < value(&pair[0], "RMSE"));
+            assert_eq!(pair[1].number("samples"), 4.0 * pair[0].number("samples"));
+            assert!(pair[1].number("RMSE") < pair[0].number("RMSE"));
         }
     }
 }
@@ -376,9 +358,8 @@ fn aliasing() {
 fn vanishing() {
     let rows = rows(&made("1.12"));
     let of = |method: &str, knob: &str, column: &str| {
-        let row =
-            rows.iter().find(|row| field(row, "method") == method && field(row, "knob") == knob);
-        value(row.expect("a row"), column)
+        let row = rows.iter().find(|row| row.text("method") == method && row.text("knob") == knob);
+        row.expect("a row").number(column)
     };
     let error = "relative RMS error of the area";
     let p = std::f64::consts::PI / 16.0;
@@ -403,23 +384,23 @@ fn vanishing() {
 #[test]
 fn where_time_goes() {
     let rows = rows(&made("1.13"));
-    let linear: Vec<_> = rows.iter().filter(|row| field(row, "index") == "linear").collect();
+    let linear: Vec<_> = rows.iter().filter(|row| row.text("index") == "linear").collect();
     assert!(linear.len() >= 6);
     for brute in linear {
         let tree = rows.iter().find(|row| {
-            field(row, "index") == "obvhs-bvh2"
-                && field(row, "scene") == field(brute, "scene")
-                && field(row, "primitives") == field(brute, "primitives")
+            row.text("index") == "obvhs-bvh2"
+                && row.text("scene") == brute.text("scene")
+                && row.text("primitives") == brute.text("primitives")
         });
         let tree = tree.expect("the same picture by the hierarchy");
-        assert_eq!(field(tree, "rays"), field(brute, "rays"));
-        let (n, rays) = (value(brute, "primitives"), value(brute, "rays"));
-        let tests = value(brute, "primitive_tests");
+        assert_eq!(tree.text("rays"), brute.text("rays"));
+        let (n, rays) = (brute.number("primitives"), brute.number("rays"));
+        let tests = brute.number("primitive_tests");
         // Of a picture's rays a half at most are shadow rays that something stops before the last primitive.
         assert!(0.5 * n * rays <= tests && tests <= n * rays, "{brute:?}");
-        assert_eq!(field(brute, "box_tests"), "0");
+        assert_eq!(brute.text("box_tests"), "0");
         if n > 500.0 {
-            let work = value(tree, "box_tests") + value(tree, "primitive_tests");
+            let work = tree.number("box_tests") + tree.number("primitive_tests");
             assert!(work < 0.1 * tests, "{tree:?}");
         }
     }
@@ -432,22 +413,22 @@ fn image_space() {
     let rows = rows(&made("1.14"));
     let (width, pixels) = (64.0, 64.0 * 48.0);
     for motion in ["to the side", "turned"] {
-        let rows: Vec<_> = rows.iter().filter(|row| field(row, "motion") == motion).collect();
+        let rows: Vec<_> = rows.iter().filter(|row| row.text("motion") == motion).collect();
         // From where the camera stood everything is held, and its own rays are all there are.
         for whole in ["seen", "held"] {
-            assert_eq!(value(rows[0], whole), value(rows[0], "points"));
+            assert_eq!(rows[0].number(whole), rows[0].number("points"));
         }
-        assert_eq!(value(rows[0], "shadow_rays_held"), value(rows[0], "shadow_rays"));
+        assert_eq!(rows[0].number("shadow_rays_held"), rows[0].number("shadow_rays"));
         for row in &rows {
             // The room is closed: a pixel's ray meets a matte surface or the mirror.
-            assert!(value(row, "points") < pixels && value(row, "points") > 0.8 * pixels);
-            assert!(value(row, "held") <= value(row, "seen"));
-            assert!(value(row, "rays") >= pixels + value(row, "shadow_rays"), "{row:?}");
+            assert!(row.number("points") < pixels && row.number("points") > 0.8 * pixels);
+            assert!(row.number("held") <= row.number("seen"));
+            assert!(row.number("rays") >= pixels + row.number("shadow_rays"), "{row:?}");
         }
         // At least a column comes into the picture for each pixel of the step.
         for row in &rows[1..] {
-            let share = value(row, "seen") / value(row, "points");
-            assert!(share <= 1.0 - 0.9 * value(row, "pixels") / width, "{row:?}");
+            let share = row.number("seen") / row.number("points");
+            assert!(share <= 1.0 - 0.9 * row.number("pixels") / width, "{row:?}");
         }
     }
 }

@@ -5,13 +5,14 @@ use lancer_core::geometry::Ray;
 use lancer_core::scene::Mesh;
 
 /// The ways of aiming, each known to break some index.
-pub const CLASSES: [&str; 8] = [
+pub const CLASSES: [&str; 9] = [
     "at a vertex",
     "at an edge",
     "along an axis through a vertex",
     "vertex to vertex",
     "in an axis plane through a vertex",
     "from the surface",
+    "from outside",
     "from far away",
     "random",
 ];
@@ -43,10 +44,10 @@ pub fn aimed(class: &str, mesh: &Mesh, center: DVec3, random: &mut dyn FnMut() -
             direction[pick(&[0, 1, 2], random)] = 0.0;
             Ray::new(vertex - 4.0 * direction, direction)
         }
-        "from the surface" => {
-            let [a, b, c] = corners(mesh, random);
-            let (u, v) = (random().sqrt(), random());
-            Ray::new((1.0 - u) * a + u * ((1.0 - v) * b + v * c), direction(random))
+        "from the surface" => Ray::new(on_surface(mesh, random), direction(random)),
+        "from outside" => {
+            let origin = center + (2.0 + 20.0 * random()) * direction(random);
+            Ray::new(origin, on_surface(mesh, random) - origin)
         }
         "from far away" => {
             let away = 10.0_f64.powf(2.0 + 10.0 * random());
@@ -63,6 +64,12 @@ fn pick<T: Copy>(from: &[T], random: &mut dyn FnMut() -> f64) -> T {
 
 fn corners(mesh: &Mesh, random: &mut dyn FnMut() -> f64) -> [DVec3; 3] {
     mesh.corners((random() * mesh.triangles.len() as f64) as usize)
+}
+
+fn on_surface(mesh: &Mesh, random: &mut dyn FnMut() -> f64) -> DVec3 {
+    let [a, b, c] = corners(mesh, random);
+    let (u, v) = (random().sqrt(), random());
+    (1.0 - u) * a + u * ((1.0 - v) * b + v * c)
 }
 
 fn in_cube(half: f64, random: &mut dyn FnMut() -> f64) -> DVec3 {

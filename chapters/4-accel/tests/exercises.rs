@@ -1,8 +1,9 @@
 //! The exercises of the chapter prove themselves: the right answer passes every check, an untouched stub
 //! passes none, every known slip is caught by the check that names it and looks like no other.
 
+use std::path::Path;
+
 use chapter_4::exercises::{COURSE, Subject};
-use lancer_exercise::{Solution, Verified, passed_by_stub};
 
 #[allow(dead_code, unused_imports, unused_variables)]
 #[path = "../stubs"]
@@ -10,7 +11,7 @@ mod stubs {
     pub mod e01_slab_test;
     pub mod e02_median_split;
     pub mod e03_sah_cost;
-    pub mod e04_ordered_traversal;
+    pub mod e04_ordered_walk;
     pub mod e05_dda_step;
     pub mod e06_kd_plane;
     pub mod e07_brute_force;
@@ -22,7 +23,7 @@ const STUB: Subject = Subject {
     median_split: stubs::e02_median_split::median_split,
     sah_cost: stubs::e03_sah_cost::sah_cost,
     best_split: stubs::e03_sah_cost::best_split,
-    visit: stubs::e04_ordered_traversal::visit,
+    visit: stubs::e04_ordered_walk::visit,
     next_cell: stubs::e05_dda_step::next_cell,
     plane_sides: stubs::e06_kd_plane::plane_sides,
     search_cells: stubs::e07_brute_force::search_cells,
@@ -30,38 +31,17 @@ const STUB: Subject = Subject {
 
 #[test]
 fn the_reference_passes_and_every_slip_is_caught() {
-    for exercise in COURSE.exercises {
-        let verified = Verified::of(exercise, COURSE.reference);
-        assert_eq!(verified.reference_fails, [""; 0], "{}", verified.name);
-        assert!(verified.proofs.len() >= 3, "{}: three slips", verified.name);
-        for proof in &verified.proofs {
-            assert_eq!(proof.twin, None, "{}: {}", verified.name, proof.says);
-            assert!(
-                proof.holds(&verified.checks),
-                "{}: {}: {:?}",
-                verified.name,
-                proof.says,
-                proof.caught
-            );
-        }
-    }
+    COURSE.prove_checks();
 }
 
 #[test]
-fn an_untouched_stub_passes_no_check() {
-    for exercise in COURSE.exercises {
-        assert_eq!(passed_by_stub(exercise, STUB), [""; 0], "{}", exercise.card.name);
-    }
+fn an_untouched_stub_passes_no_check_and_names_its_slide() {
+    COURSE.prove_stubs(STUB);
 }
 
 #[test]
-fn a_stub_names_its_cards_slide() {
-    for exercise in COURSE.exercises {
-        let card = exercise.card;
-        let first = card.stub.lines().next().unwrap();
-        let wanted = (format!("//! {} ", card.id), format!(" Slide « {} ».", card.slide));
-        assert!(first.starts_with(&wanted.0) && first.ends_with(&wanted.1), "{first}");
-    }
+fn every_solution_stands_where_its_card_says() {
+    COURSE.prove_solutions(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")));
 }
 
 /// Whoever draws it, and however often: what differs from it is the student's own.
@@ -70,17 +50,6 @@ fn a_picture_is_the_same_every_time() {
     for exercise in COURSE.exercises {
         let [a, b] = [0; 2].map(|_| (exercise.draw)(&COURSE.reference));
         assert_eq!(a.pixels(), b.pixels(), "{}", exercise.card.id);
-    }
-}
-
-#[test]
-fn every_solution_stands_where_its_card_says() {
-    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
-    for exercise in COURSE.exercises {
-        let Solution { file, item, .. } = exercise.card.solution;
-        let text = std::fs::read_to_string(format!("{root}/{file}")).unwrap();
-        let is_there = text.lines().any(|line| line.trim_start().starts_with(item));
-        assert!(is_there, "{}: no `{item}` in {file}", exercise.card.name);
     }
 }
 

@@ -131,17 +131,18 @@ impl BinaryTree<'_> {
 }
 
 /// A ray on its way down the tree.
-struct Descent<'a, O, D> {
+struct Descent<'a, O> {
     tree: &'a BinaryTree<'a>,
     slabs: FourSlabs,
     /// Where the closest hit so far is, in the units of the boxes.
     max: f32,
     probe: Probe<'a>,
+    /// Whether the first hit ends the walk.
+    any: bool,
     observer: &'a mut O,
-    done: D,
 }
 
-impl<O: Observer, D: Fn(&Probe) -> bool> Descent<'_, O, D> {
+impl<O: Observer> Descent<'_, O> {
     /// Where the ray enters the node's box, if it does so before the closest hit.
     fn enter(&mut self, node: &TreeNode) -> Option<f32> {
         self.observer.region(&|| self.tree.frame.in_scene(node.bounds));
@@ -155,7 +156,7 @@ impl<O: Observer, D: Fn(&Probe) -> bool> Descent<'_, O, D> {
         if node.is_leaf() {
             for &primitive in &tree.primitives[node.leaf()] {
                 self.observer.primitive_test(primitive);
-                if self.probe.test(primitive) && (self.done)(&self.probe) {
+                if self.probe.test(primitive) && self.any {
                     return true;
                 }
             }
@@ -175,13 +176,13 @@ impl<O: Observer, D: Fn(&Probe) -> bool> Descent<'_, O, D> {
 }
 
 impl Traversal for BinaryTree<'_> {
-    /// Visits the primitives whose boxes the ray meets, the nearer child first, until `done` says so.
+    /// Visits the primitives whose boxes the ray meets, the nearer child first, until any hit will do.
     fn walk<O: Observer>(
         &self,
         ray: &Ray,
         range: Interval,
+        any: bool,
         observer: &mut O,
-        done: impl Fn(&Probe) -> bool,
     ) -> Option<Hit> {
         let root = self.nodes.first()?;
         let slabs = FourSlabs::new(ray, &self.frame);
@@ -190,8 +191,8 @@ impl Traversal for BinaryTree<'_> {
             slabs,
             max: slabs.parameter(range.max),
             probe: Probe::new(self.scene, ray, range),
+            any,
             observer,
-            done,
         };
         if descent.enter(root).is_some() {
             descent.visit(root);

@@ -366,8 +366,8 @@ impl<'s> BspTree<'s> {
         &self,
         ray: &Ray,
         range: Interval,
+        any: bool,
         observer: &mut O,
-        done: impl Fn(&Probe) -> bool,
         mut enter_leaf: impl FnMut(usize),
     ) -> Option<Hit> {
         let mut probe = Probe::new(self.scene, ray, range);
@@ -379,7 +379,7 @@ impl<'s> BspTree<'s> {
         let test_all = |probe: &mut Probe, observer: &mut O, node: &Node| {
             self.primitives_of(node).iter().any(|&primitive| {
                 observer.primitive_test(primitive);
-                probe.test(primitive) && done(probe)
+                probe.test(primitive) && any
             })
         };
         let mut stack = Stack::new();
@@ -463,7 +463,7 @@ impl<'s> BspTree<'s> {
     /// The numbers of the cells that the search for the closest hit visits, in this order.
     pub fn visited_leaves(&self, ray: &Ray, range: Interval) -> Vec<usize> {
         let mut visited = Vec::new();
-        self.walk_leaves(ray, range, &mut (), |_| false, |node| visited.push(node));
+        self.walk_leaves(ray, range, false, &mut (), |node| visited.push(node));
         visited.into_iter().map(|node| self.number(node)).collect()
     }
 
@@ -532,16 +532,16 @@ impl<'s> BspTree<'s> {
 }
 
 impl Traversal for BspTree<'_> {
-    /// Visits the cells along the ray until one holds a hit, or `done` says so.
+    /// Visits the cells along the ray until one holds a hit, or any will do.
     #[inline]
     fn walk<O: Observer>(
         &self,
         ray: &Ray,
         range: Interval,
+        any: bool,
         observer: &mut O,
-        done: impl Fn(&Probe) -> bool,
     ) -> Option<Hit> {
-        self.walk_leaves(ray, range, observer, done, |_| {})
+        self.walk_leaves(ray, range, any, observer, |_| {})
     }
 }
 

@@ -21,7 +21,7 @@ pub(crate) trait RayCells<'i> {
     fn next<O: Observer>(&mut self, max: f64, observer: &mut O) -> Option<Cell<'i>>;
 }
 
-/// Tests the primitives of cell after cell until `done` says so or no cell can hold a better hit.
+/// Tests the primitives of cell after cell until any hit will do or no cell can hold a better hit.
 ///
 /// A primitive may be hit outside the cell in which it is found. Such a hit counts at once, since it is
 /// no less a hit; but it ends the search only when the cells in front of it are done: [`RayCells::next`]
@@ -31,8 +31,8 @@ pub(crate) fn search<'i, O: Observer>(
     mut cells: impl RayCells<'i>,
     mut probe: Probe,
     mailboxing: bool,
+    any: bool,
     observer: &mut O,
-    done: impl Fn(&Probe) -> bool,
 ) -> Option<Hit> {
     let mut mailbox = Mailbox::new();
     while let Some(cell) = cells.next(probe.range().max, observer) {
@@ -41,7 +41,7 @@ pub(crate) fn search<'i, O: Observer>(
                 continue;
             }
             observer.primitive_test(primitive);
-            if probe.test(primitive) && done(&probe) {
+            if probe.test(primitive) && any {
                 return probe.best();
             }
         }

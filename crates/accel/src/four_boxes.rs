@@ -210,6 +210,13 @@ impl FourSlabs {
         (t * self.per_unit - self.skipped) as f32
     }
 
+    /// The same, rounded down.
+    #[inline(always)]
+    pub(crate) fn parameter_below(&self, t: f64) -> f32 {
+        // Undoes the factor of `per_unit` and goes as far to the other side.
+        (t * self.per_unit * (1.0 - 2.0 * f64::from(f32::EPSILON)) - self.skipped) as f32
+    }
+
     /// Entry parameters of the four boxes, and a mask of the lanes whose box the ray meets before
     /// `max`.
     #[inline(always)]

@@ -84,8 +84,8 @@ impl<'s> FourWide<'s> {
         &self,
         ray: &Ray,
         range: Interval,
+        any: bool,
         observer: &mut O,
-        done: impl Fn(&Probe) -> bool,
     ) -> Option<Hit> {
         let mut probe = Probe::new(self.scene, ray, range);
         let slabs = FourSlabs::new(ray, &self.frame);
@@ -105,7 +105,7 @@ impl<'s> FourWide<'s> {
                 }
                 for &primitive in &self.primitives[node.leaf(lane)] {
                     observer.primitive_test(primitive);
-                    if probe.test(primitive) && done(&probe) {
+                    if probe.test(primitive) && any {
                         return probe.best();
                     }
                 }

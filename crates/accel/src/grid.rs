@@ -212,20 +212,20 @@ impl<'s> Grid<'s> {
 }
 
 impl Traversal for Grid<'_> {
-    /// Visits the primitives of cell after cell along the ray, until `done` says so or the closest hit is
+    /// Visits the primitives of cell after cell along the ray, until any hit will do or the closest is
     /// nearer than the next cell.
     #[inline]
     fn walk<O: Observer>(
         &self,
         ray: &Ray,
         range: Interval,
+        any: bool,
         observer: &mut O,
-        done: impl Fn(&Probe) -> bool,
     ) -> Option<Hit> {
         let probe = Probe::new(self.scene, ray, range);
         match self.path(ray, range)? {
-            Path::Line(line) => search(line, probe, self.mailboxing, observer, done),
-            Path::Slices(slices) => search(slices, probe, self.mailboxing, observer, done),
+            Path::Line(line) => search(line, probe, self.mailboxing, any, observer),
+            Path::Slices(slices) => search(slices, probe, self.mailboxing, any, observer),
         }
     }
 }

@@ -359,8 +359,8 @@ impl<'s> KdTree<'s> {
         &self,
         ray: &Ray,
         range: Interval,
+        any: bool,
         observer: &mut O,
-        done: impl Fn(&Probe) -> bool,
         mut enter_leaf: impl FnMut(usize),
     ) -> Option<Hit> {
         let mut probe = Probe::new(self.scene, ray, range);
@@ -396,7 +396,7 @@ impl<'s> KdTree<'s> {
                     enter_leaf(index);
                     for &primitive in &self.primitives[first as usize..][..count as usize] {
                         observer.primitive_test(primitive);
-                        if probe.test(primitive) && done(&probe) {
+                        if probe.test(primitive) && any {
                             return probe.best();
                         }
                     }
@@ -453,7 +453,7 @@ impl<'s> KdTree<'s> {
     /// [`KdTree::leaves`].
     pub fn visited_leaves(&self, ray: &Ray, range: Interval) -> Vec<usize> {
         let mut visited = Vec::new();
-        self.walk_leaves(ray, range, &mut (), |_| false, |node| visited.push(node));
+        self.walk_leaves(ray, range, false, &mut (), |node| visited.push(node));
         let is_leaf = |node: &&Node| matches!(node, Node::Leaf { .. });
         visited.iter().map(|&node| self.nodes[..node].iter().filter(is_leaf).count()).collect()
     }
@@ -523,16 +523,16 @@ impl<'s> KdTree<'s> {
 }
 
 impl Traversal for KdTree<'_> {
-    /// Visits the cells along the ray until one holds a hit, or `done` says so.
+    /// Visits the cells along the ray until one holds a hit, or any will do.
     #[inline]
     fn walk<O: Observer>(
         &self,
         ray: &Ray,
         range: Interval,
+        any: bool,
         observer: &mut O,
-        done: impl Fn(&Probe) -> bool,
     ) -> Option<Hit> {
-        self.walk_leaves(ray, range, observer, done, |_| {})
+        self.walk_leaves(ray, range, any, observer, |_| {})
     }
 }
 

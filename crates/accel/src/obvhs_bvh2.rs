@@ -1,6 +1,6 @@
 use glam::Vec3A;
 use lancer_core::geometry::{Interval, Ray};
-use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
+use lancer_core::intersector::{Hit, Observer, Traversal};
 use lancer_core::scene::{PrimitiveId, Scene};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
@@ -81,15 +81,15 @@ fn taken_over(node: &Bvh2Node) -> TreeNode {
 
 impl Traversal for ObvhsBvh2<'_> {
     /// Visits the primitives whose boxes the ray meets, the leaves of a node before its other
-    /// children and the nearest of those next, until `done` says so.
+    /// children and the nearest of those next, until any hit will do.
     #[inline]
     fn walk<O: Observer>(
         &self,
         ray: &Ray,
         range: Interval,
+        any: bool,
         observer: &mut O,
-        done: impl Fn(&Probe) -> bool,
     ) -> Option<Hit> {
-        self.0.walk(ray, range, observer, done)
+        self.0.walk(ray, range, any, observer)
     }
 }

@@ -112,14 +112,14 @@ fn unpack(node: &CwBvhNode) -> [FourBoxes; 2] {
 
 impl Traversal for ObvhsCwbvh<'_> {
     /// Visits the primitives whose boxes the ray meets, the leaves of a node before its other
-    /// children and the nearest of those next, until `done` says so.
+    /// children and the nearest of those next, until any hit will do.
     #[inline]
     fn walk<O: Observer>(
         &self,
         ray: &Ray,
         range: Interval,
+        any: bool,
         observer: &mut O,
-        done: impl Fn(&Probe) -> bool,
     ) -> Option<Hit> {
         let mut probe = Probe::new(self.scene, ray, range);
         let slabs = FourSlabs::new(ray, &self.frame);
@@ -144,7 +144,7 @@ impl Traversal for ObvhsCwbvh<'_> {
                 }
                 for &primitive in self.leaf(node, slot) {
                     observer.primitive_test(primitive);
-                    if probe.test(primitive) && done(&probe) {
+                    if probe.test(primitive) && any {
                         return probe.best();
                     }
                 }

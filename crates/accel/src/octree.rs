@@ -291,18 +291,18 @@ impl<'s> Octree<'s> {
 }
 
 impl Traversal for Octree<'_> {
-    /// Visits the primitives of leaf after leaf along the ray, until `done` says so or the closest hit is
+    /// Visits the primitives of leaf after leaf along the ray, until any hit will do or the closest is
     /// nearer than all other cubes.
     #[inline]
     fn walk<O: Observer>(
         &self,
         ray: &Ray,
         range: Interval,
+        any: bool,
         observer: &mut O,
-        done: impl Fn(&Probe) -> bool,
     ) -> Option<Hit> {
         let descent = self.descent(ray, range)?;
-        search(descent, Probe::new(self.scene, ray, range), self.mailboxing, observer, done)
+        search(descent, Probe::new(self.scene, ray, range), self.mailboxing, any, observer)
     }
 }
 

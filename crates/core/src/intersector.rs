@@ -43,27 +43,27 @@ pub trait Observable: Intersector {
     ) -> Option<Hit>;
 }
 
-/// An index whose every question is one traversal, which can be watched and stopped. It is an
-/// [`Intersector`], and [`Observable`].
+/// An index whose every question is one traversal, which can be watched. It is an [`Intersector`], and
+/// [`Observable`].
 pub trait Traversal: Sync {
-    /// Visits primitives that the ray may meet in `range` until none can be nearer than the closest met,
-    /// or `done` says so of the one met last. Returns the closest.
+    /// Visits primitives that the ray may meet in `range` until none can be nearer than the closest met
+    /// or, if `any` hit will do, one is met. Returns the closest.
     fn walk<O: Observer>(
         &self,
         ray: &Ray,
         range: Interval,
+        any: bool,
         observer: &mut O,
-        done: impl Fn(&Probe) -> bool,
     ) -> Option<Hit>;
 }
 
 impl<T: Traversal> Intersector for T {
     fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
-        self.walk(ray, range, &mut (), |_| false)
+        self.walk(ray, range, false, &mut ())
     }
 
     fn occluded(&self, ray: &Ray, range: Interval) -> bool {
-        self.walk(ray, range, &mut (), |_| true).is_some()
+        self.walk(ray, range, true, &mut ()).is_some()
     }
 }
 
@@ -75,7 +75,7 @@ impl<T: Traversal> Observable for T {
         any: bool,
         mut observer: &mut dyn Observer,
     ) -> Option<Hit> {
-        self.walk(ray, range, &mut observer, |_| any)
+        self.walk(ray, range, any, &mut observer)
     }
 }
 
@@ -274,19 +274,19 @@ impl<'s> LinearScan<'s> {
 }
 
 impl Traversal for LinearScan<'_> {
-    /// Visits the primitives in order until `done` says so.
+    /// Visits the primitives in order until any hit will do.
     #[inline]
     fn walk<O: Observer>(
         &self,
         ray: &Ray,
         range: Interval,
+        any: bool,
         observer: &mut O,
-        done: impl Fn(&Probe) -> bool,
     ) -> Option<Hit> {
         let mut probe = Probe::new(self.scene, ray, range);
         for primitive in self.scene.primitives() {
             observer.primitive_test(primitive);
-            if probe.test(primitive) && done(&probe) {
+            if probe.test(primitive) && any {
                 break;
             }
         }

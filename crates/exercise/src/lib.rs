@@ -3,13 +3,14 @@
 //! A chapter's *subject* is a struct of plain function pointers, one for each function to be written. Its
 //! [`Course`] holds the reference (the chapter's own code) and, for each [`Exercise`], the pristine stub,
 //! the [`Check`]s, and [`Mutant`]s: the reference with one plausible mistake. Mutants prove that the checks
-//! can fail ([`Course::verify`]), and when a student's answer behaves as a mutant does, its name says which
+//! can fail ([`Course::prove_checks`]), and when a student's answer behaves as a mutant does, its name says which
 //! slip it is.
 //!
 //! The student's files live in a small workspace of their own, made by `cargo xtask exercise`; its program
 //! puts their functions into a subject and calls [`run`].
 
 mod course;
+mod guard;
 mod judge;
 mod mismatch;
 mod runner;

@@ -113,6 +113,18 @@ impl Table {
         &self.rows
     }
 
+    /// The rows with their columns' names, to be read by name.
+    pub fn records(&self) -> Vec<Record> {
+        let record = |row: &Vec<Value>| {
+            let fields = row.iter().map(|value| match value {
+                Value::Text(text) => text.clone(),
+                number => number.field(),
+            });
+            Record(self.columns.iter().cloned().zip(fields).collect())
+        };
+        self.rows.iter().map(record).collect()
+    }
+
     /// The table as a CSV file with a header; lines end with `\n`.
     pub fn to_csv(&self) -> String {
         let header = self.columns.iter().map(|name| quoted(name)).collect();
@@ -120,6 +132,30 @@ impl Table {
         let lines =
             std::iter::once(header).chain(rows).map(|fields: Vec<String>| fields.join(",") + "\n");
         lines.collect()
+    }
+}
+
+/// A row of a [`Table`], by the names of its columns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record(Vec<(String, String)>);
+
+impl Record {
+    /// A cell as the file has it, without quotes.
+    ///
+    /// # Panics
+    /// If there is no such column.
+    pub fn text(&self, column: &str) -> &str {
+        let found = self.0.iter().find(|(name, _)| name == column);
+        &found.unwrap_or_else(|| panic!("no column {column:?}")).1
+    }
+
+    /// A cell's number.
+    ///
+    /// # Panics
+    /// If there is no such column, or no number in it.
+    pub fn number(&self, column: &str) -> f64 {
+        let text = self.text(column);
+        text.parse().unwrap_or_else(|_| panic!("{column:?} has no number: {text:?}"))
     }
 }
 
@@ -163,5 +199,14 @@ mod tests {
     #[should_panic(expected = "a cell for each")]
     fn a_short_row_is_refused() {
         Table::new(["a", "b"]).push([1.0.into()]);
+    }
+
+    #[test]
+    fn records_are_read_by_name() {
+        let mut table = Table::new(["method", "error", "rays"]);
+        table.push(["a, b".into(), 0.5.into(), 3_u64.into()]);
+        let [record] = &table.records()[..] else { panic!("a row") };
+        assert_eq!((record.text("method"), record.number("error")), ("a, b", 0.5));
+        assert_eq!((record.text("rays"), record.number("rays")), ("3", 3.0));
     }
 }

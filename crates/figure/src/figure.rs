@@ -1,7 +1,7 @@
 //! What a chapter hands over for each of its figures.
 
 use crate::data::Table;
-use crate::plate::Plate;
+use crate::plate::{Plate, Verdict};
 
 /// How much work goes into a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,6 +31,21 @@ pub struct Figure {
     pub name: &'static str,
     /// Makes it.
     pub make: fn(Effort) -> Finished,
+}
+
+impl Figure {
+    /// For tests: the figure of that id, made at its quick size, whose claim holds on a legible plate.
+    ///
+    /// # Panics
+    /// If there is none, or its claim fails, or text overlaps or leaves the plate.
+    pub fn proved(figures: &[Self], id: &str) -> Finished {
+        let figure = figures.iter().find(|figure| figure.id == id);
+        let finished = (figure.unwrap_or_else(|| panic!("no figure {id}")).make)(Effort::Quick);
+        assert_eq!(finished.plate.id(), id);
+        assert_eq!(finished.plate.verdict(), Verdict::Holds, "{}", finished.plate.claim());
+        assert_eq!(finished.plate.canvas().faults(), [], "{id}: text overlaps or leaves the plate");
+        finished
+    }
 }
 
 /// A figure that has been made.

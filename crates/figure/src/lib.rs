@@ -62,7 +62,7 @@ pub use axis::Axis;
 pub use bars::BarChart;
 pub use canvas::{Canvas, Fault};
 pub use chart::{Chart, Datum, Series, Spread};
-pub use data::{Table, Value};
+pub use data::{Record, Table, Value};
 pub use diagram::{Drawing, Pen};
 pub use figure::{Effort, Figure, Finished};
 pub use font::{Weight, missing_glyphs, text_width};

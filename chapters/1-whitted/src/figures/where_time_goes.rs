@@ -3,7 +3,7 @@
 use lancer_accel::ObvhsBvh2;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::image::ImageSize;
-use lancer_core::intersector::{Hit, Intersector, LinearScan, TestCounts, Traversal};
+use lancer_core::intersector::{Intersector, LinearScan, Observable, TestCounts};
 use lancer_core::scene::Scene;
 use lancer_core::world::World;
 use lancer_figure::{
@@ -39,39 +39,17 @@ impl Recorder for Queries {
     }
 }
 
-enum Index<'s> {
-    Linear(LinearScan<'s>),
-    Tree(ObvhsBvh2<'s>),
-}
-
 /// Their names as methods.
 const INDEXES: [&str; 2] = ["linear", "obvhs-bvh2"];
 /// The scenes with a level of detail.
 const FAMILIES: [&str; 2] = ["flake", "tetrahedra"];
-
-impl Index<'_> {
-    fn intersector(&self) -> &dyn Intersector {
-        match self {
-            Self::Linear(index) => index,
-            Self::Tree(index) => index,
-        }
-    }
-
-    fn count(&self, query: &Query, counts: &mut TestCounts) -> Option<Hit> {
-        let Query { ray, range, any } = query;
-        match self {
-            Self::Linear(index) => index.walk(ray, *range, counts, |_| *any),
-            Self::Tree(index) => index.walk(ray, *range, counts, |_| *any),
-        }
-    }
-}
 
 /// A scene at one level of detail with one index.
 struct Case<'s> {
     scene_name: &'static str,
     scene: &'s Scene,
     index_name: &'static str,
-    index: Index<'s>,
+    index: Box<dyn Observable + 's>,
     size: ImageSize,
     queries: Vec<Query>,
     counts: TestCounts,
@@ -84,15 +62,15 @@ impl<'s> Case<'s> {
         index_name: &'static str,
         size: ImageSize,
     ) -> Self {
-        let index = match index_name {
-            "linear" => Index::Linear(LinearScan::new(scene)),
-            _ => Index::Tree(ObvhsBvh2::build(scene)),
+        let index: Box<dyn Observable> = match index_name {
+            "linear" => Box::new(LinearScan::new(scene)),
+            _ => Box::new(ObvhsBvh2::build(scene)),
         };
         let mut queries = Queries::default();
-        picture(scene, &index, size, &mut queries);
+        picture(scene, &*index, size, &mut queries);
         let (queries, mut counts) = (queries.0, TestCounts::default());
-        for query in &queries {
-            index.count(query, &mut counts);
+        for Query { ray, range, any } in &queries {
+            index.watch(ray, *range, *any, &mut counts);
         }
         Self { scene_name, scene, index_name, index, size, queries, counts }
     }
@@ -117,18 +95,22 @@ impl<'s> Case<'s> {
 
     /// Only the queries. Returns the number of hits.
     fn replay(&self) -> f64 {
-        let index = self.index.intersector();
         let hits = self.queries.iter().filter(|query| match query.any {
-            false => index.closest_hit(&query.ray, query.range).is_some(),
-            true => index.occluded(&query.ray, query.range),
+            false => self.index.closest_hit(&query.ray, query.range).is_some(),
+            true => self.index.occluded(&query.ray, query.range),
         });
         hits.count() as f64
     }
 }
 
 /// A picture by one thread: the sum of its pixels.
-fn picture<R: Recorder>(scene: &Scene, index: &Index, size: ImageSize, recorder: &mut R) -> f64 {
-    let method = Whitted::new(World { scene, index: index.intersector() }, Settings::default());
+fn picture<R: Recorder>(
+    scene: &Scene,
+    index: &dyn Intersector,
+    size: ImageSize,
+    recorder: &mut R,
+) -> f64 {
+    let method = Whitted::new(World { scene, index }, Settings::default());
     let rays = scene.camera.primary_rays(size);
     let pixels = (0..size.height).flat_map(|y| (0..size.width).map(move |x| (x, y)));
     pixels
@@ -173,7 +155,7 @@ pub fn make(effort: Effort) -> Finished {
             knob: case.primitives().to_string(),
             run: Box::new(move || {
                 let outcome = match part {
-                    "whole" => picture(case.scene, &case.index, case.size, &mut ()),
+                    "whole" => picture(case.scene, &*case.index, case.size, &mut ()),
                     _ => case.replay(),
                 };
                 (outcome, case.queries.len() as u64)

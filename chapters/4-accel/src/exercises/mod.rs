@@ -4,7 +4,7 @@
 mod e01_slab_test;
 mod e02_median_split;
 mod e03_sah_cost;
-mod e04_ordered_traversal;
+mod e04_ordered_walk;
 mod e05_dda_step;
 mod e06_kd_plane;
 mod e07_brute_force;
@@ -65,7 +65,7 @@ pub static COURSE: Course<Subject> = Course {
         e01_slab_test::EXERCISE,
         e02_median_split::EXERCISE,
         e03_sah_cost::EXERCISE,
-        e04_ordered_traversal::EXERCISE,
+        e04_ordered_walk::EXERCISE,
         e05_dda_step::EXERCISE,
         e06_kd_plane::EXERCISE,
         e07_brute_force::EXERCISE,

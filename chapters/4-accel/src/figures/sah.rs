@@ -124,14 +124,14 @@ fn case_of(
         // Beyond all hits: none counts, so nothing stops the line.
         let nowhere = Interval { min: f64::MAX, max: f64::INFINITY };
         work.add(&tree, |tree, counts| {
-            tree.walk(&line, nowhere, counts, |_| false);
+            tree.walk(&line, nowhere, false, counts);
         });
     }
     let mut of_rays = Work::default();
     for rays in Rays::of(&scene, size, &tree) {
         for query in &rays.queries {
             of_rays.add(&tree, |tree, counts| {
-                tree.walk(&query.ray, query.range, counts, |_| rays.kind.any());
+                tree.walk(&query.ray, query.range, rays.kind.any(), counts);
             });
         }
     }

@@ -15,7 +15,7 @@ const BINS: usize = 16;
 /// At this depth the heuristic is given up and nodes are halved, which ends within log2 of 2³²
 /// further levels: no arrangement of primitives makes the recursion deeper than [`MAX_DEPTH`].
 const SAH_DEPTH: usize = 64;
-const MAX_DEPTH: usize = SAH_DEPTH + 32;
+pub(crate) const MAX_DEPTH: usize = SAH_DEPTH + 32;
 /// Subtrees of fewer primitives are not worth a task of their own.
 const TASK: usize = 4096;
 

@@ -2,11 +2,12 @@
 
 mod grow;
 
+pub(crate) use grow::MAX_DEPTH;
 pub use grow::split_at_median;
 
 use glam::Vec3A;
 use lancer_core::geometry::{ConvexVolume, Interval, Ray};
-use lancer_core::intersector::{BeamTraversal, Hit, Observer, Probe, Traversal};
+use lancer_core::intersector::{BeamTraversal, Hit, Observer, Traversal};
 use lancer_core::scene::{PrimitiveId, Scene};
 use rayon::prelude::*;
 
@@ -78,16 +79,16 @@ impl<'s> Bvh<'s> {
 
 impl Traversal for Bvh<'_> {
     /// Visits the primitives whose boxes the ray meets, the leaves of a node before its other
-    /// children and the nearest of those next, until `done` says so.
+    /// children and the nearest of those next, until any hit will do.
     #[inline]
     fn walk<O: Observer>(
         &self,
         ray: &Ray,
         range: Interval,
+        any: bool,
         observer: &mut O,
-        done: impl Fn(&Probe) -> bool,
     ) -> Option<Hit> {
-        self.0.walk(ray, range, observer, done)
+        self.0.walk(ray, range, any, observer)
     }
 }
 
@@ -237,7 +238,7 @@ mod tests {
                 let turn = f64::from(k) * 2.4;
                 let origin = 3.0 * DVec3::new(turn.cos(), turn.sin(), f64::from(k) / 1000.0);
                 let ray = Ray::new(origin, 0.3 * DVec3::new(turn.sin(), 0.0, turn.cos()) - origin);
-                assert!(index.walk(&ray, Interval::POSITIVE, &mut counts, |_| false).is_some());
+                assert!(index.walk(&ray, Interval::POSITIVE, false, &mut counts).is_some());
             }
             (index.statistics().sah_cost, counts.boxes + counts.primitives)
         });

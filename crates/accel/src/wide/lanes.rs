@@ -139,7 +139,7 @@ impl Lanes for Scalar {
 #[cfg(target_arch = "x86_64")]
 #[allow(unsafe_code)]
 pub(super) mod avx2 {
-    //! The only `unsafe` of the course. Every intrinsic here needs AVX2 or FMA and nothing else: a value
+    //! Every intrinsic here needs AVX2 or FMA and nothing else: a value
     //! of [`Avx2`] exists only where the processor was found to have both. Loads and stores go through
     //! references or slices whose lengths are checked.
 

@@ -27,7 +27,7 @@ use lanes::avx2::Avx2;
 ///                     a.x [n] a.y [n] a.z [n]   one corner
 ///                     e.x [n] e.y [n] e.z [n]   to the second
 ///                     f.x [n] f.y [n] f.z [n]   to the third
-///                     id [n]                    41 bytes a triangle at n = 8, without gaps
+///                     id [n]                    42 bytes a triangle at n = 8
 /// ```
 ///
 /// All coordinates are those of the scene's own frame, [−1, 1]³: `f32` keeps its digits wherever the scene
@@ -40,8 +40,8 @@ use lanes::avx2::Avx2;
 /// - Triangles are filtered eight at a time in `f32`, against *bounds* instead of 0: the filter keeps all that
 ///   `f64` might accept. Most that it keeps are *certain*: `f64` must accept them too, so they shorten
 ///   the ray at once, and a shadow ray ends there without any `f64`.
-/// - `f64` decides among the few that are left, at the end of the walk: one primitive for most rays. The answer
-///   is that of [`lancer_core::intersector::LinearScan`], bit for bit.
+/// - `f64` decides among the few that are left, at the end of the walk. The answer is that of
+///   [`lancer_core::intersector::LinearScan`], bit for bit.
 ///
 /// # The bounds
 ///
@@ -54,15 +54,15 @@ use lanes::avx2::Avx2;
 ///
 /// Let u = 2⁻²⁴, D = 1 + |o| (so |C| ≤ D), δ = |d| and s = the longest edge component, all in the maximum
 /// norm. Rounding a, o, and their difference moves C by 2 u D; e and f were rounded from exact differences and
-/// are off by u s, d by u δ. To first order in u, each product's operands and the operations themselves add:
+/// are off by u s, d by u δ. To first order in u, without any fused rounding, each product's operands and the operations themselves add:
 ///
 /// ```text
 /// R   ≤ 2 D δ      off by  2 (2 + 1) u D δ + 4 u D δ            =  10 u D δ
 /// U,V ≤ 6 D δ s    off by  3 (10 + 2) u D δ s + 3 · 3 · 2 u D δ s =  54 u D δ s
-/// N   ≤ 2 s²       off by  2 · 2 u s² + 3 u s²                  =   7 u s²
-/// Δ   ≤ 6 s² δ     off by  3 (7 + 2) u s² δ + 3 · 3 · 2 u s² δ  =  45 u s² δ
-/// T   ≤ 6 s² D     off by  3 (7 + 4) u s² D + 3 · 3 · 2 u s² D  =  51 u s² D
-/// W                off by  2 · 54 + 2 · 45 + 2 (6 + 6 + 6)      ≤ 234 u D δ s      since s ≤ 2 D
+/// N   ≤ 2 s²       off by  2 · 2 u s² + 4 u s²                  =   8 u s²
+/// Δ   ≤ 6 s² δ     off by  3 (8 + 2) u s² δ + 3 · 3 · 2 u s² δ  =  48 u s² δ
+/// T   ≤ 6 s² D     off by  3 (8 + 4) u s² D + 3 · 3 · 2 u s² D  =  54 u s² D
+/// W                off by  2 · 54 + 2 · 48 + 18 + 24            = 246 u D δ s      since s ≤ 2 D
 /// ```
 ///
 /// so with e = 256 u D δ s, e_Δ = 64 u s² δ and e_T = 64 u s² D whatever has U, V, W ≥ 0 is kept by

@@ -58,8 +58,7 @@ fn a_validation_finds_what_is_wrong() {
     assert!(missing.ends_with("is in no leaf"), "{missing}");
 }
 
-/// Leaves are shared, boxes are few: a whole mesh of n triangles takes fewer than n / 4 nodes, and 60
-/// bytes a triangle.
+/// Nodes and leaves are well filled: n triangles take fewer than n / 4 nodes, and 60 bytes each.
 #[test]
 fn a_tree_is_small() {
     let scene = Scene::of_mesh(icosphere(5));
@@ -152,7 +151,7 @@ fn filter_first<L: Lanes>(lanes: L, wide: &Wide, ray: &Ray) -> Option<(FourSlabs
     Some((wide_ray.slabs, certain >> lane & 1 != 0, lowest[lane], highest[lane]))
 }
 
-/// Of a plane's two halves only one is met, and `f64` is asked once: the certain hit is the answer.
+/// The walk goes down to what the ray meets, and to little else.
 #[test]
 fn a_ray_in_the_open_asks_little() {
     let scene = Scene::of_mesh(icosphere(4));

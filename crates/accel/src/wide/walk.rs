@@ -9,10 +9,11 @@ use lancer_core::scene::PrimitiveId;
 use super::collapse::WIDTH;
 use super::lanes::Lanes;
 use super::{Child, Node, Wide};
+use crate::bvh::MAX_DEPTH;
 use crate::four_boxes::FourSlabs;
 
-/// Levels of a tree at most: no binary tree that is collapsed has more.
-pub(super) const MOST_LEVELS: usize = 97;
+/// Levels of a tree at most: it has no more than the binary tree that is collapsed.
+pub(super) const MOST_LEVELS: usize = MAX_DEPTH + 1;
 /// Entries of the stack at most: all children but one of a node on each level.
 const MOST_PENDING: usize = MOST_LEVELS * (WIDTH - 1);
 /// Candidates for the answer that are kept until the end of the walk.
@@ -376,8 +377,7 @@ pub(super) fn any<L: Lanes, O: Observer>(
     let wide_ray = WideRay::new(lanes, wide, ray, range);
     let mut probe = Probe::new(wide.scene, ray, range);
     let max = wide_ray.slabs.parameter(range.max);
-    // The parameter was rounded up.
-    let surely_before = max * (1.0 - 4.0 * f32::EPSILON);
+    let surely_before = wide_ray.slabs.parameter_below(range.max);
     let mut stack = Stack::<MOST_PENDING>::new();
     let mut next = Child::node(0);
     loop {

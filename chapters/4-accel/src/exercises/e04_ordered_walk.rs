@@ -20,8 +20,8 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         name: "ordered-walk",
         title: "Near child first",
         slide: "Hiérarchie de volumes englobants",
-        file: "e04_ordered_traversal.rs",
-        stub: include_str!("../../stubs/e04_ordered_traversal.rs"),
+        file: "e04_ordered_walk.rs",
+        stub: include_str!("../../stubs/e04_ordered_walk.rs"),
         functions: &["visit"],
         minutes: 20,
         predict: "left the picture shows the balls, right how many of them each ray tests: where are the \

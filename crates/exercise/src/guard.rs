@@ -1,0 +1,58 @@
+//! What a chapter's own tests prove of its exercises.
+
+use std::path::Path;
+
+use crate::{Course, Verified, passed_by_stub};
+
+impl<S: Copy + Send> Course<S> {
+    /// Proves the checks: the right answer passes them all, and each of at least three slips is caught by
+    /// the check that it names and looks like no other.
+    ///
+    /// # Panics
+    /// If not.
+    pub fn prove_checks(&self) {
+        for exercise in self.exercises {
+            let verified = Verified::of(exercise, self.reference);
+            let name = verified.name;
+            assert_eq!(verified.reference_fails, [""; 0], "{name}");
+            assert!(verified.proofs.len() >= 3, "{name}: three slips");
+            for proof in &verified.proofs {
+                assert_eq!(proof.twin, None, "{name}: {}", proof.says);
+                assert!(
+                    proof.holds(&verified.checks),
+                    "{name}: {}: {:?}",
+                    proof.says,
+                    proof.caught
+                );
+            }
+        }
+    }
+
+    /// Proves that untouched stubs pass no check, and that each names its exercise and slide.
+    ///
+    /// # Panics
+    /// If not.
+    pub fn prove_stubs(&self, stubs: S) {
+        for exercise in self.exercises {
+            let card = exercise.card;
+            assert_eq!(passed_by_stub(exercise, stubs), [""; 0], "{}", card.name);
+            let first = card.stub.lines().next().unwrap_or_default();
+            let (id, slide) = (format!("//! {} ", card.id), format!(" Slide « {} ».", card.slide));
+            assert!(first.starts_with(&id) && first.ends_with(&slide), "{first}");
+        }
+    }
+
+    /// Proves that the course's own answers stand where the cards say, below the root of the repository.
+    ///
+    /// # Panics
+    /// If not.
+    pub fn prove_solutions(&self, root: &Path) {
+        for exercise in self.exercises {
+            let (name, solution) = (exercise.card.name, exercise.card.solution);
+            let text = std::fs::read_to_string(root.join(solution.file));
+            let text = text.unwrap_or_else(|error| panic!("{name}: {}: {error}", solution.file));
+            let is_there = text.lines().any(|line| line.trim_start().starts_with(solution.item));
+            assert!(is_there, "{name}: no `{}` in {}", solution.item, solution.file);
+        }
+    }
+}
