@@ -5,12 +5,12 @@ use chapter_4::aimed::{CLASSES, aimed};
 use chapter_4::structures::STRUCTURES;
 use glam::DVec3;
 use lancer_accel::{BinaryTree, Bvh, ObvhsBvh2, Split, Wide};
-use lancer_core::generate::icosphere;
+use lancer_core::generate::{cube, icosphere};
 use lancer_core::geometry::{Interval, Ray, Sphere};
 use lancer_core::intersector::{Intersector, LinearScan, TestCounts, Traversal};
 use lancer_core::scene::{MaterialId, Mesh, Scene, SphereObject};
 
-use crate::meshes::{OFFSETS, cube, moved};
+use crate::meshes::{OFFSETS, moved};
 use crate::random::Random;
 
 /// Every index of chapter 4 but the oracle, and the variants of hierarchies.

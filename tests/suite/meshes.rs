@@ -1,7 +1,7 @@
 //! Closed meshes around the origin, and rays aimed at what their triangles share.
 
 use glam::{DAffine3, DVec3};
-use lancer_core::generate::icosphere;
+use lancer_core::generate::{cube, icosphere};
 use lancer_core::geometry::Ray;
 use lancer_core::scene::{MaterialId, Mesh};
 
@@ -79,17 +79,6 @@ fn prism(n: u32) -> Mesh {
         let (a, b) = (top(k), top(k + 1));
         triangles.extend([[0, b, a], [1, a + 1, b + 1], [a, b, b + 1], [a, b + 1, a + 1]]);
     }
-    from_triangles(positions, &triangles)
-}
-
-pub fn cube() -> Mesh {
-    let positions = (0..8)
-        .map(|k| DVec3::new(f64::from(k & 1), f64::from(k >> 1 & 1), f64::from(k >> 2)) * 2.0 - 1.0)
-        .collect();
-    let quads =
-        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let triangles: Vec<[u32; 3]> =
-        quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
     from_triangles(positions, &triangles)
 }
 

@@ -3,12 +3,11 @@
 use chapter_4::naive::first_hit_wins;
 use glam::DVec3;
 use lancer_accel::{Grid, GridBuilder, Octree, OctreeBuilder};
-use lancer_core::generate::icosphere;
+use lancer_core::generate::{cube, icosphere};
 use lancer_core::geometry::{Bounds3, Interval, Ray};
 use lancer_core::intersector::{Intersector, LinearScan, TestCounts, Traversal};
 use lancer_core::scene::{MaterialId, Mesh, Scene};
 
-use crate::meshes::cube;
 use crate::random::Random;
 
 /// Small triangles, evenly spread in a box.

@@ -44,7 +44,7 @@ const CHAPTERS: [Chapter; 2] = [
   cargo xtask figures 1 --out plates  the figures of chapter 1 into the folder plates
   cargo xtask figures --list")]
 pub struct Args {
-    /// Chapters (1) and figures (1.7, or by name: depth)
+    /// Chapters (1, 4) and figures (1.7, or by name: depth)
     #[arg(value_name = "CHAPTER|FIGURE")]
     selection: Vec<String>,
     /// Only names the figures

@@ -250,10 +250,9 @@ impl<'g> RayCells<'g> for Line<'g> {
             return None;
         }
         let cell = self.dda.next()?;
-        let grid = self.grid;
-        observer.region(&|| grid.lattice.bounds(cell));
+        observer.region(&|| self.grid.lattice.bounds(cell));
         observer.cell_visit();
-        Some(grid.cell(cell, enter))
+        Some(self.grid.cell(cell, enter))
     }
 }
 
@@ -409,7 +408,7 @@ impl Dda {
         Self::from_cell(lattice, ray, lattice.cell_of(ray.at(enter)), enter)
     }
 
-    #[inline(always)]
+    #[inline]
     fn from_cell(lattice: Lattice, ray: &Ray, start: IVec3, enter: f64) -> Self {
         let axes = [0, 1, 2].map(|k| {
             let (min, width) = (lattice.min[k], lattice.width[k]);

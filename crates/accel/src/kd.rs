@@ -372,9 +372,7 @@ impl<'s> KdTree<'s> {
         let mut stack = Stack::new();
         let mut index = 0;
         loop {
-            // A copy: what is borrowed would live in memory even when nobody watches.
-            let here = index;
-            observer.region(&|| self.cell(here));
+            observer.region(&|| self.cell(index));
             observer.cell_visit();
             match self.nodes[index] {
                 Node::Inner { axis, above, split } => {

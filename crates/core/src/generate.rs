@@ -65,6 +65,18 @@ pub fn icosphere(level: u32) -> Mesh {
     mesh
 }
 
+/// The cube [−1, 1]³, each of its faces one polygon of two triangles.
+pub fn cube() -> Mesh {
+    let corner = |k: u32| DVec3::from([k & 1, k >> 1 & 1, k >> 2].map(f64::from)) * 2.0 - 1.0;
+    let mut mesh = Mesh { positions: (0..8).map(corner).collect(), ..Mesh::default() };
+    let quads =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    for [a, b, c, d] in quads {
+        mesh.push_face(MaterialId(0), &[[a, b, c], [a, c, d]]);
+    }
+    mesh
+}
+
 /// A sphere of radius ½ at the origin with nine spheres of a third of its size on it, nine on each of
 /// those, and so on `level` times: (9^(level+1) − 1) / 8 spheres.
 pub fn sphere_flake(level: u32, material: MaterialId) -> Vec<SphereObject> {
@@ -202,6 +214,12 @@ mod tests {
         // An inscribed mesh lacks volume of the order of the squared edge length.
         let lack = 1.0 - six_volumes(&icosphere(4)) / (8.0 * std::f64::consts::PI);
         assert!(lack > 0.0 && lack < 5e-3, "{lack}");
+    }
+
+    #[test]
+    fn a_cube_is_closed_and_faces_outwards() {
+        assert!(is_closed(&cube()) && cube().faces.len() == 6);
+        assert_eq!(six_volumes(&cube()), 6.0 * 8.0);
     }
 
     #[test]

@@ -1,13 +1,13 @@
 //! 4.11: every index against brute force, and what indexes lose as they are often written.
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DQuat, DVec3};
 use lancer_accel::Grid;
-use lancer_core::generate::icosphere;
+use lancer_core::generate::{cube, icosphere};
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::image::ImageSize;
 use lancer_core::intersector::{Hit, Intersector, LinearScan};
 use lancer_core::sampling::Uniform;
-use lancer_core::scene::{MaterialId, Mesh, Scene};
+use lancer_core::scene::{Mesh, Scene};
 use lancer_figure::{
     BarChart, Contender, Effort, Finished, Plate, Row, Study, Table, Value, category_color,
     method_color,
@@ -126,9 +126,9 @@ fn scenes() -> [(Scene, DVec3); 3] {
     for k in 0..27 {
         let place = DVec3::new(f64::from(k % 3), f64::from(k / 3 % 3), f64::from(k / 9));
         let transform = DAffine3::from_scale_rotation_translation(
-            DVec3::splat(0.5),
-            glam::DQuat::IDENTITY,
-            0.5 * (place - 1.5),
+            DVec3::splat(0.25),
+            DQuat::IDENTITY,
+            0.5 * (place - 1.0),
         );
         cubes.append(&cube(), transform, 0);
     }
@@ -137,18 +137,6 @@ fn scenes() -> [(Scene, DVec3); 3] {
         (Scene::of_mesh(moved(&icosphere(3), far)), far),
         (Scene::of_mesh(cubes), DVec3::ZERO),
     ]
-}
-
-/// The unit cube from the origin, its faces outwards.
-fn cube() -> Mesh {
-    let corner = |k: u32| DVec3::new(f64::from(k & 1), f64::from(k >> 1 & 1), f64::from(k >> 2));
-    let mut mesh = Mesh { positions: (0..8).map(corner).collect(), ..Mesh::default() };
-    let quads =
-        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    for [a, b, c, d] in quads {
-        mesh.push_face(MaterialId(0), &[[a, b, c], [a, c, d]]);
-    }
-    mesh
 }
 
 fn count(scene: &Scene, class: &'static str, rays: &[Ray], cases: &mut Vec<Case>) {
