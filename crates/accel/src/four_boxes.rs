@@ -85,7 +85,7 @@ impl FrameBox {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
     center: DVec3,
-    to_unit: f64,
+    pub(crate) to_unit: f64,
 }
 
 impl Frame {

@@ -26,6 +26,19 @@ pub trait Intersector: Sync {
     /// The first primitive that the ray meets in `range`.
     fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit>;
 
+    /// The first primitives that many rays meet in `range`: the answers of [`Intersector::closest_hit`], each
+    /// in its ray's place. Some indexes are faster if neighbours in the slice start in one point and go the
+    /// same way.
+    ///
+    /// # Panics
+    /// If the slices are not of one length.
+    fn closest_hits(&self, rays: &[Ray], range: Interval, hits: &mut [Option<Hit>]) {
+        assert_eq!(rays.len(), hits.len(), "one answer for each ray");
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = self.closest_hit(ray, range);
+        }
+    }
+
     /// Whether the ray meets anything in `range`.
     fn occluded(&self, ray: &Ray, range: Interval) -> bool;
 }

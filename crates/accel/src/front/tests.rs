@@ -9,7 +9,26 @@ use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 
 use crate::hard_sets::{hard_sets, triangles};
-use crate::{Bvh, Grid};
+use crate::{Bvh, Grid, Wide};
+
+/// Every index that beams can ask.
+struct Indexes<'s> {
+    linear: LinearScan<'s>,
+    bvh: Bvh<'s>,
+    wide: Wide<'s>,
+    grid: Grid<'s>,
+}
+
+impl<'s> Indexes<'s> {
+    fn build(scene: &'s Scene) -> Self {
+        Self {
+            linear: LinearScan::new(scene),
+            bvh: Bvh::build(scene),
+            wide: Wide::build(scene),
+            grid: Grid::build(scene),
+        }
+    }
+}
 
 fn found(index: &dyn BeamIndex, volume: &ConvexVolume, far: f64) -> Vec<PrimitiveId> {
     let mut found = Vec::new();
@@ -41,16 +60,17 @@ fn extent(scene: &Scene, volume: &ConvexVolume, primitive: PrimitiveId) -> [f64;
     [depths.clone().fold(f64::INFINITY, f64::min), depths.fold(f64::NEG_INFINITY, f64::max)]
 }
 
-/// Asks all three, and checks all that they promise of each other. Returns what brute force finds, and
+/// Asks all four, and checks all that they promise of each other. Returns what brute force finds, and
 /// what the grid does.
 fn agree(
     scene: &Scene,
-    [linear, bvh, grid]: [&dyn BeamIndex; 3],
+    Indexes { linear, bvh, wide, grid }: &Indexes,
     volume: &ConvexVolume,
     far: f64,
 ) -> [BTreeSet<PrimitiveId>; 2] {
     let all = found(linear, volume, far);
     assert_eq!(found(bvh, volume, far), all, "{volume:?}");
+    assert_eq!(found(wide, volume, far), all, "{volume:?}");
     let ours = found(grid, volume, far);
     // The grid knows only the surface's cells, brute force all of the primitive.
     assert!(set(&ours).is_subset(&set(&all)));
@@ -135,7 +155,7 @@ fn what_touches_a_beam_is_found() {
             })
             .collect();
         let scene = triangles(corners.iter().map(|corners| corners.map(real)));
-        let indexes = (LinearScan::new(&scene), Bvh::build(&scene), Grid::build(&scene));
+        let indexes = Indexes::build(&scene);
         for beam in 0..40 {
             let apex = near([place; 3], 8);
             let base = near([place; 3], 6);
@@ -150,8 +170,7 @@ fn what_touches_a_beam_is_found() {
             let points: Vec<DVec3> = window.iter().copied().map(real).collect();
             let volume =
                 ConvexVolume::pyramid(Ray::new(real(apex), points[0] - real(apex)), &points);
-            let [all, ours] =
-                agree(&scene, [&indexes.0, &indexes.1, &indexes.2], &volume, f64::INFINITY);
+            let [all, ours] = agree(&scene, &indexes, &volume, f64::INFINITY);
             let inside = |p: DVec3| volume.may_meet(&Bounds3 { min: p, max: p });
             for (k, triangle) in corners.iter().enumerate() {
                 if !exactly_meet(apex, &window, triangle) {
@@ -210,25 +229,19 @@ fn beams(scene: &Scene, count: u32) -> Vec<(ConvexVolume, Vec<Ray>)> {
 
 /// What a ray in the beam hits is in the beam: the truth is another algorithm's.
 fn rays_are_in_beams(name: &str, scene: &Scene, count: u32) -> usize {
-    let indexes = (LinearScan::new(scene), Bvh::build(scene), Grid::build(scene));
+    let indexes = Indexes::build(scene);
     let size = (scene.bounds().max - scene.bounds().min).max_element();
     let mut hits = 0;
     for (volume, rays) in beams(scene, count) {
-        let [all, ours] =
-            agree(scene, [&indexes.0, &indexes.1, &indexes.2], &volume, f64::INFINITY);
+        let [all, ours] = agree(scene, &indexes, &volume, f64::INFINITY);
         for ray in rays {
-            let Some(hit) = indexes.1.closest_hit(&ray, Interval::POSITIVE) else { continue };
+            let Some(hit) = indexes.bvh.closest_hit(&ray, Interval::POSITIVE) else { continue };
             hits += 1;
             assert!(all.contains(&hit.primitive), "{name}: {ray:?} {hit:?} {volume:?}");
             assert!(ours.contains(&hit.primitive), "{name}, grid: {ray:?} {hit:?} {volume:?}");
             // Up to its depth as well.
             let depth = volume.axis().direction.dot(ray.at(hit.t) - volume.axis().origin);
-            let [all, ours] = agree(
-                scene,
-                [&indexes.0, &indexes.1, &indexes.2],
-                &volume,
-                depth + 1e-9 * (size + depth),
-            );
+            let [all, ours] = agree(scene, &indexes, &volume, depth + 1e-9 * (size + depth));
             assert!(
                 all.contains(&hit.primitive) && ours.contains(&hit.primitive),
                 "{name}: {depth}"
@@ -245,8 +258,8 @@ fn hard_sets_are_searched() {
     assert!(hits > 500, "{hits}");
     let (_, empty) = &sets[0];
     let everywhere = ConvexVolume::of_half_spaces(Ray::new(DVec3::ZERO, DVec3::X), []);
-    assert_eq!(found(&Bvh::build(empty), &everywhere, f64::INFINITY), []);
-    assert_eq!(found(&Grid::build(empty), &everywhere, f64::INFINITY), []);
+    agree(empty, &Indexes::build(empty), &everywhere, f64::INFINITY);
+    assert_eq!(found(&LinearScan::new(empty), &everywhere, f64::INFINITY), []);
 }
 
 #[test]
@@ -282,7 +295,8 @@ fn a_bound_saves_work() {
     let wanted = search(&linear, true);
     assert_eq!(wanted.0.primitives, scene.primitives().len() as u64);
     assert_eq!(found(&linear, &volume, middle), wanted.1);
-    for index in [&Bvh::build(&scene) as &dyn BeamIndex, &Grid::build(&scene)] {
+    let (bvh, wide, grid) = (Bvh::build(&scene), Wide::build(&scene), Grid::build(&scene));
+    for index in [&bvh as &dyn BeamIndex, &wide, &grid] {
         let [(all, both), (less, front)] = [false, true].map(|bounded| search(index, bounded));
         assert_eq!(set(&front), set(&wanted.1));
         assert!(both.len() > 3 * front.len() / 2 && !front.is_empty());

@@ -32,6 +32,37 @@ pub(super) trait Lanes: Copy {
     fn at_least(self, a: Self::F, b: Self::F) -> u32;
     /// One bit per lane: a > b.
     fn above(self, a: Self::F, b: Self::F) -> u32;
+    /// `a` in the lanes whose bit is set, `b` in the others.
+    fn select(self, bits: u32, a: Self::F, b: Self::F) -> Self::F;
+}
+
+/// Three coordinates, or directions, of eight things.
+pub(super) type Vectors<L> = [<L as Lanes>::F; 3];
+
+// Functions, not closures: only what is surely inlined is compiled for the processor that was found.
+
+#[inline(always)]
+pub(super) fn splat3<L: Lanes>(l: L, [x, y, z]: [f32; 3]) -> Vectors<L> {
+    [l.splat(x), l.splat(y), l.splat(z)]
+}
+
+#[inline(always)]
+pub(super) fn sub3<L: Lanes>(l: L, a: Vectors<L>, b: Vectors<L>) -> Vectors<L> {
+    [l.sub(a[0], b[0]), l.sub(a[1], b[1]), l.sub(a[2], b[2])]
+}
+
+#[inline(always)]
+pub(super) fn cross<L: Lanes>(l: L, a: Vectors<L>, b: Vectors<L>) -> Vectors<L> {
+    [
+        l.mul_sub(a[1], b[2], l.mul(a[2], b[1])),
+        l.mul_sub(a[2], b[0], l.mul(a[0], b[2])),
+        l.mul_sub(a[0], b[1], l.mul(a[1], b[0])),
+    ]
+}
+
+#[inline(always)]
+pub(super) fn dot<L: Lanes>(l: L, a: Vectors<L>, b: Vectors<L>) -> L::F {
+    l.mul_add(a[0], b[0], l.mul_add(a[1], b[1], l.mul(a[2], b[2])))
 }
 
 /// One lane after the other. The compiler makes of it what the target always has: SSE2, NEON.
@@ -133,6 +164,11 @@ impl Lanes for Scalar {
     #[inline(always)]
     fn above(self, a: [f32; 8], b: [f32; 8]) -> u32 {
         bits(|k| a[k] > b[k])
+    }
+
+    #[inline(always)]
+    fn select(self, bits: u32, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
+        each(|k| if bits >> k & 1 != 0 { a[k] } else { b[k] })
     }
 }
 
@@ -266,6 +302,16 @@ pub(super) mod avx2 {
         #[inline(always)]
         fn above(self, a: __m256, b: __m256) -> u32 {
             unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(a, b)) as u32 }
+        }
+
+        #[inline(always)]
+        fn select(self, bits: u32, a: __m256, b: __m256) -> __m256 {
+            unsafe {
+                let lanes = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+                let set = _mm256_and_si256(_mm256_set1_epi32(bits as i32), lanes);
+                let mask = _mm256_cmpeq_epi32(set, lanes);
+                _mm256_blendv_ps(b, a, _mm256_castsi256_ps(mask))
+            }
         }
     }
 }

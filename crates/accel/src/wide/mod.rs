@@ -2,14 +2,16 @@
 
 mod collapse;
 mod lanes;
+mod packet;
 mod walk;
 
-use lancer_core::geometry::{Interval, Ray};
-use lancer_core::intersector::{Hit, Intersector, Observable, Observer, Probe};
+use lancer_core::geometry::{ConvexVolume, Interval, Ray};
+use lancer_core::intersector::{BeamTraversal, Hit, Intersector, Observable, Observer, Probe};
 use lancer_core::scene::{PrimitiveId, Scene};
 
 use crate::binary_tree::{BinaryTree, Seen};
 use crate::four_boxes::{Frame, FrameBox};
+use crate::front::Front;
 use collapse::WIDTH;
 use lanes::Scalar;
 #[cfg(target_arch = "x86_64")]
@@ -268,6 +270,18 @@ impl Intersector for Wide<'_> {
         self.closest(ray, range, &mut ())
     }
 
+    fn closest_hits(&self, rays: &[Ray], range: Interval, hits: &mut [Option<Hit>]) {
+        assert_eq!(rays.len(), hits.len(), "one answer for each ray");
+        match self.kernel {
+            #[cfg(target_arch = "x86_64")]
+            Kernel::Avx2(avx2) => avx2.call(
+                #[inline(always)]
+                |lanes| packet::closest(lanes, self, rays, range, hits),
+            ),
+            Kernel::Scalar(lanes) => packet::closest(lanes, self, rays, range, hits),
+        }
+    }
+
     fn occluded(&self, ray: &Ray, range: Interval) -> bool {
         self.any(ray, range, &mut ()).is_some()
     }
@@ -287,6 +301,36 @@ impl Observable for Wide<'_> {
         let mut probe = Probe::new(self.scene, ray, range);
         probe.test(self.any(ray, range, &mut observer)?);
         probe.best()
+    }
+}
+
+impl BeamTraversal for Wide<'_> {
+    /// Opens the nearest node that the beam may meet, until the nearest of all is a primitive: each comes
+    /// once, in order of depth and id, as by brute force. Boxes are decided in `f64`: a beam has a dozen
+    /// half-spaces, and few boxes need them all.
+    fn walk_beam<O: Observer>(
+        &self,
+        volume: &ConvexVolume,
+        far: f64,
+        observer: &mut O,
+        visit: impl FnMut(PrimitiveId) -> f64,
+    ) {
+        let root = (!self.nodes.is_empty()).then_some(Child::node(0));
+        Front::new(self.scene, volume, far, observer).search(root, visit, |front, child, found| {
+            if child.is_leaf() {
+                for primitive in self.primitives(child) {
+                    front.primitive(primitive, found);
+                }
+                return;
+            }
+            let node = &self.nodes[child.0 as usize];
+            for (lane, &child) in node.children.iter().enumerate() {
+                let bounds = node.bounds(lane);
+                if bounds != FrameBox::EMPTY {
+                    front.node(&self.frame.in_scene(bounds), child);
+                }
+            }
+        });
     }
 }
 

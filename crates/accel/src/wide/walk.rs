@@ -7,7 +7,7 @@ use lancer_core::intersector::{Hit, Observer, Probe};
 use lancer_core::scene::PrimitiveId;
 
 use super::collapse::WIDTH;
-use super::lanes::Lanes;
+use super::lanes::{Lanes, Vectors, cross, dot, splat3, sub3};
 use super::{Child, Node, Wide};
 use crate::bvh::MAX_DEPTH;
 use crate::four_boxes::FourSlabs;
@@ -15,12 +15,14 @@ use crate::four_boxes::FourSlabs;
 /// Levels of a tree at most: it has no more than the binary tree that is collapsed.
 pub(super) const MOST_LEVELS: usize = MAX_DEPTH + 1;
 /// Entries of the stack at most: all children but one of a node on each level.
-const MOST_PENDING: usize = MOST_LEVELS * (WIDTH - 1);
+pub(super) const MOST_PENDING: usize = MOST_LEVELS * (WIDTH - 1);
 /// Candidates for the answer that are kept until the end of the walk.
 const CANDIDATES: usize = 24;
 
 /// The farthest origin from which hits are called certain, in units of the scene's frame.
 const FARTHEST: f32 = 16.0;
+/// Unit roundoff of `f32`.
+pub(super) const U: f32 = 0.5 * f32::EPSILON;
 
 /// A ray in the scene's frame, broadcast to all lanes.
 pub(super) struct WideRay<L: Lanes> {
@@ -29,15 +31,12 @@ pub(super) struct WideRay<L: Lanes> {
     /// Which of a node's rows of planes a ray meets first on each axis, and last.
     near: [usize; 3],
     far: [usize; 3],
-    inverse: [L::F; 3],
-    near_offset: [L::F; 3],
-    far_offset: [L::F; 3],
-    origin: [L::F; 3],
-    direction: [L::F; 3],
-    /// 256 u D δ, 64 u δ and 64 u D of the bounds.
-    edge_bound: f32,
-    det_bound: f32,
-    t_bound: f32,
+    inverse: Vectors<L>,
+    near_offset: Vectors<L>,
+    far_offset: Vectors<L>,
+    origin: Vectors<L>,
+    direction: Vectors<L>,
+    bounds: Bounds,
     /// A hit must be this far away to be certain.
     min: f32,
 }
@@ -45,9 +44,7 @@ pub(super) struct WideRay<L: Lanes> {
 impl<L: Lanes> WideRay<L> {
     #[inline(always)]
     pub(super) fn new(lanes: L, wide: &Wide, ray: &Ray, range: Interval) -> Self {
-        const U: f32 = 0.5 * f32::EPSILON;
         let slabs = FourSlabs::new(ray, &wide.frame);
-        let all = |v: glam::Vec3A| v.to_array().map(|x| lanes.splat(x));
         let reach = 1.0 + slabs.origin.abs().max_element() + slabs.moved / U;
         let length = slabs.direction.abs().max_element();
         // From farther away the parameter's own bound in `f64` might exceed what is certain here.
@@ -60,14 +57,12 @@ impl<L: Lanes> WideRay<L> {
             slabs,
             near,
             far: near.map(|row| row ^ 1),
-            inverse: all(slabs.inverse),
-            near_offset: all(slabs.near_offset),
-            far_offset: all(slabs.far_offset),
-            origin: all(slabs.origin),
-            direction: all(slabs.direction),
-            edge_bound: 256.0 * U * reach * length,
-            det_bound: 64.0 * U * length,
-            t_bound: 64.0 * U * reach,
+            inverse: splat3(lanes, slabs.inverse.to_array()),
+            near_offset: splat3(lanes, slabs.near_offset.to_array()),
+            far_offset: splat3(lanes, slabs.far_offset.to_array()),
+            origin: splat3(lanes, slabs.origin.to_array()),
+            direction: splat3(lanes, slabs.direction.to_array()),
+            bounds: Bounds::new(reach, length),
             min,
         }
     }
@@ -76,117 +71,174 @@ impl<L: Lanes> WideRay<L> {
     #[inline(always)]
     fn enter(&self, node: &Node, max: f32) -> (L::F, u32) {
         let lanes = self.lanes;
-        let at = |rows: [usize; 3], offset: &[L::F; 3], axis: usize| {
-            lanes.mul_add(lanes.load(&node.planes[rows[axis]]), self.inverse[axis], offset[axis])
-        };
-        let near = |axis| at(self.near, &self.near_offset, axis);
-        let far = |axis| at(self.far, &self.far_offset, axis);
-        let first = lanes.max(lanes.max(near(0), near(1)), lanes.max(near(2), lanes.splat(0.0)));
-        let last = lanes.min(lanes.min(far(0), far(1)), lanes.min(far(2), lanes.splat(max)));
+        let near = self.planes(node, self.near, &self.near_offset);
+        let far = self.planes(node, self.far, &self.far_offset);
+        let first = lanes.max(lanes.max(near[0], near[1]), lanes.max(near[2], lanes.splat(0.0)));
+        let last = lanes.min(lanes.min(far[0], far[1]), lanes.min(far[2], lanes.splat(max)));
         (first, lanes.at_least(last, first))
+    }
+
+    /// Where the ray meets three rows of planes.
+    #[inline(always)]
+    fn planes(&self, node: &Node, [x, y, z]: [usize; 3], offset: &Vectors<L>) -> Vectors<L> {
+        let lanes = self.lanes;
+        [
+            lanes.mul_add(lanes.load(&node.planes[x]), self.inverse[0], offset[0]),
+            lanes.mul_add(lanes.load(&node.planes[y]), self.inverse[1], offset[1]),
+            lanes.mul_add(lanes.load(&node.planes[z]), self.inverse[2], offset[2]),
+        ]
     }
 
     /// Filters the triangles of a leaf: see [`Wide`] for the formulas and their bounds.
     #[inline(always)]
-    pub(super) fn filter(&self, words: &[f32], count: usize, max: f32) -> Filtered<L::F> {
+    pub(super) fn filter(&self, words: &[f32], count: usize, max: L::F) -> Filtered<L::F> {
         let l = self.lanes;
         let [ax, ay, az, ex, ey, ez, fx, fy, fz] = l.rows::<9>(&words[1..=9 * count], count);
-        let [ox, oy, oz] = self.origin;
-        let [dx, dy, dz] = self.direction;
-        let s = words[0];
-        let e = l.splat(self.edge_bound * s);
-        let e_det = self.det_bound * s * s;
-        let e_t = l.splat(self.t_bound * s * s);
-
-        let (cx, cy, cz) = (l.sub(ax, ox), l.sub(ay, oy), l.sub(az, oz));
-        let nx = l.mul_sub(ey, fz, l.mul(ez, fy));
-        let ny = l.mul_sub(ez, fx, l.mul(ex, fz));
-        let nz = l.mul_sub(ex, fy, l.mul(ey, fx));
-        let rx = l.mul_sub(cy, dz, l.mul(cz, dy));
-        let ry = l.mul_sub(cz, dx, l.mul(cx, dz));
-        let rz = l.mul_sub(cx, dy, l.mul(cy, dx));
-        let dot = |a: [L::F; 3], b: [L::F; 3]| {
-            l.mul_add(a[0], b[0], l.mul_add(a[1], b[1], l.mul(a[2], b[2])))
-        };
-        let det = dot([nx, ny, nz], [dx, dy, dz]);
-        let zero = l.splat(0.0);
-        let t = l.turn(dot([nx, ny, nz], [cx, cy, cz]), det);
-        let u = l.turn(dot([rx, ry, rz], [fx, fy, fz]), det);
-        let v = l.turn(l.sub(zero, dot([rx, ry, rz], [ex, ey, ez])), det);
-        let det = l.abs(det);
-        let w = l.sub(l.sub(det, u), v);
-
-        let inside = l.min(u, l.min(v, w));
-        let det_most = l.add(det, l.splat(e_det));
-        let kept = l.at_least(inside, l.sub(zero, e))
-            & l.at_least(t, l.sub(zero, e_t))
-            & l.at_least(l.mul_sub(l.splat(max), det_most, t), l.sub(zero, e_t))
-            & ((1 << count) - 1);
-        Filtered { kept, inside, e, t, e_t, det, det_most, e_det }
-    }
-
-    /// For the triangles that are kept: which hits are certain, and between which parameters they lie.
-    #[inline(always)]
-    pub(super) fn certain(&self, filtered: &Filtered<L::F>) -> (u32, [f32; 8], [f32; 8]) {
-        let l = self.lanes;
-        let Filtered { kept, inside, e, t, e_t, det, det_most, e_det } = *filtered;
-        // The quotients round too.
-        let lowest = l.mul(l.div(l.sub(t, e_t), det_most), l.splat(1.0 - 4.0 * f32::EPSILON));
-        let det_least = l.sub(det, l.splat(e_det));
-        let highest = l.mul(l.div(l.add(t, e_t), det_least), l.splat(1.0 + 4.0 * f32::EPSILON));
-        let certain = kept
-            & l.above(inside, e)
-            & l.above(t, e_t)
-            & l.above(det_least, l.splat(e_det))
-            & l.above(lowest, l.splat(self.min));
-        (certain, l.store(lowest), l.store(highest))
+        let (e, f) = ([ex, ey, ez], [fx, fy, fz]);
+        let c = sub3(l, [ax, ay, az], self.origin);
+        let n = cross(l, e, f);
+        let r = cross(l, c, self.direction);
+        let (det, t) = (dot(l, n, self.direction), dot(l, n, c));
+        let (u, v) = (dot(l, r, f), l.sub(l.splat(0.0), dot(l, r, e)));
+        Filtered::new(l, [u, v, det, t], self.bounds.of(l, words[0]), max, (1 << count) - 1)
     }
 }
 
-/// The eight triangles of a leaf after the filter.
+/// What 256 u D δ, 64 u δ and 64 u D of the bounds are, for a ray or for several.
+pub(super) struct Bounds {
+    edge: f32,
+    det: f32,
+    t: f32,
+}
+
+/// The bounds for one leaf.
+#[derive(Clone, Copy)]
+pub(super) struct LeafBounds<F> {
+    pub(super) e: F,
+    pub(super) e_t: F,
+    e_det: F,
+}
+
+impl Bounds {
+    /// D is `reach`, δ is `length`.
+    #[inline(always)]
+    pub(super) fn new(reach: f32, length: f32) -> Self {
+        Self { edge: 256.0 * U * reach * length, det: 64.0 * U * length, t: 64.0 * U * reach }
+    }
+
+    /// For a leaf whose longest edge component is `s`.
+    #[inline(always)]
+    pub(super) fn of<L: Lanes>(&self, l: L, s: f32) -> LeafBounds<L::F> {
+        let e_det = l.splat(self.det * s * s);
+        LeafBounds { e: l.splat(self.edge * s), e_t: l.splat(self.t * s * s), e_det }
+    }
+}
+
+/// Eight pairs of a ray and a triangle after the filter.
 pub(super) struct Filtered<F> {
     /// What `f64` might accept, a bit per lane.
     pub(super) kept: u32,
-    /// The least of U, V and W, and its bound.
+    /// The least of U, V and W.
     inside: F,
-    e: F,
     t: F,
-    e_t: F,
     det: F,
     det_most: F,
-    e_det: f32,
+    bounds: LeafBounds<F>,
+}
+
+impl<F: Copy> Filtered<F> {
+    /// Keeps what may be a hit before `max`, among the lanes of `valid`: see [`Wide`] for the comparisons.
+    #[inline(always)]
+    pub(super) fn new<L: Lanes<F = F>>(
+        l: L,
+        [u, v, det, t]: [F; 4],
+        bounds: LeafBounds<F>,
+        max: F,
+        valid: u32,
+    ) -> Self {
+        let (u, v, t) = (l.turn(u, det), l.turn(v, det), l.turn(t, det));
+        let det = l.abs(det);
+        let inside = l.min(u, l.min(v, l.sub(l.sub(det, u), v)));
+        let det_most = l.add(det, bounds.e_det);
+        let zero = l.splat(0.0);
+        let (e, e_t) = (l.sub(zero, bounds.e), l.sub(zero, bounds.e_t));
+        let kept = l.at_least(inside, e)
+            & l.at_least(t, e_t)
+            & l.at_least(l.mul_sub(max, det_most, t), e_t)
+            & valid;
+        Self { kept, inside, t, det, det_most, bounds }
+    }
+
+    /// Which of the kept hits are certain and lie beyond `min`, and between which parameters they lie.
+    #[inline(always)]
+    pub(super) fn certain<L: Lanes<F = F>>(&self, l: L, min: f32) -> (u32, F, F) {
+        let Self { kept, inside, t, det, det_most, bounds } = *self;
+        // The quotients round too.
+        let lowest =
+            l.mul(l.div(l.sub(t, bounds.e_t), det_most), l.splat(1.0 - 4.0 * f32::EPSILON));
+        let det_least = l.sub(det, bounds.e_det);
+        let highest =
+            l.mul(l.div(l.add(t, bounds.e_t), det_least), l.splat(1.0 + 4.0 * f32::EPSILON));
+        let certain = kept
+            & l.above(inside, bounds.e)
+            & l.above(t, bounds.e_t)
+            & l.above(det_least, bounds.e_det)
+            & l.above(lowest, l.splat(min));
+        (certain, lowest, highest)
+    }
 }
 
 /// At most `N` numbers, the last one first: a parameter that is at least 0 in the high bits, so that integers
 /// are in the order of parameters, and what is there in the low ones. Nothing is initialised in vain.
-struct Stack<const N: usize> {
+pub(super) struct Stack<const N: usize> {
     entries: [MaybeUninit<u64>; N],
     length: usize,
 }
 
 impl<const N: usize> Stack<N> {
     #[inline(always)]
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self { entries: [const { MaybeUninit::uninit() }; N], length: 0 }
     }
 
     #[inline(always)]
-    fn push(&mut self, entry: u64) {
+    pub(super) fn push(&mut self, entry: u64) {
         self.entries[self.length] = MaybeUninit::new(entry);
         self.length += 1;
     }
 
     #[inline(always)]
     #[allow(unsafe_code)]
-    fn pop(&mut self) -> Option<u64> {
+    pub(super) fn pop(&mut self) -> Option<u64> {
         self.length = self.length.checked_sub(1)?;
         // SAFETY: entries below the length have been pushed.
         Some(unsafe { self.entries[self.length].assume_init() })
     }
 
+    /// Whether there may be no room for `more`.
+    #[inline(always)]
+    pub(super) fn lacks_room_for(&self, more: usize) -> bool {
+        self.length + more > N
+    }
+
+    /// All entries, in rising order.
+    #[inline(always)]
+    #[allow(unsafe_code)]
+    pub(super) fn sorted(&mut self) -> &[u64] {
+        // SAFETY: entries below the length have been pushed.
+        let entries = unsafe { self.entries[..self.length].assume_init_mut() };
+        entries.sort_unstable();
+        entries
+    }
+
     /// Pushes the lanes of a mask with at least two bits, far ones first, but for the nearest.
     #[inline(always)]
-    fn push_but_nearest(&mut self, mut met: u32, near: &[f32; 8], children: &[Child; 8]) -> Child {
+    pub(super) fn push_but_nearest(
+        &mut self,
+        mut met: u32,
+        near: &[f32; 8],
+        children: &[Child; 8],
+    ) -> Child {
         let mut take = || {
             let lane = met.trailing_zeros() as usize % WIDTH;
             met &= met - 1;
@@ -239,12 +291,12 @@ fn key(parameter: f32, what: u32) -> u64 {
 }
 
 #[inline(always)]
-fn child(entry: u64) -> Child {
+pub(super) fn child(entry: u64) -> Child {
     Child(entry as u32)
 }
 
 #[inline(always)]
-fn near(entry: u64) -> f32 {
+pub(super) fn near(entry: u64) -> f32 {
     f32::from_bits((entry >> 32) as u32)
 }
 
@@ -347,11 +399,12 @@ fn visit_leaf<L: Lanes>(wide: &Wide, ray: &WideRay<L>, leaf: Child, candidates: 
     }
     let count = leaf.count();
     let words = &wide.leaves[leaf.offset()..][..1 + 10 * count];
-    let filtered = ray.filter(words, count, candidates.max);
+    let filtered = ray.filter(words, count, ray.lanes.splat(candidates.max));
     if filtered.kept == 0 {
         return;
     }
-    let (certain, lowest, highest) = ray.certain(&filtered);
+    let (certain, lowest, highest) = filtered.certain(ray.lanes, ray.min);
+    let (lowest, highest) = (ray.lanes.store(lowest), ray.lanes.store(highest));
     let mut kept = filtered.kept;
     while kept != 0 {
         let lane = kept.trailing_zeros() as usize % WIDTH;
@@ -427,12 +480,13 @@ fn in_the_way<L: Lanes, O: Observer>(
     }
     let count = leaf.count();
     let words = &wide.leaves[leaf.offset()..][..1 + 10 * count];
-    let filtered = ray.filter(words, count, max);
+    let filtered = ray.filter(words, count, ray.lanes.splat(max));
     if filtered.kept == 0 {
         return None;
     }
     let id = |lane: usize| PrimitiveId(words[1 + 9 * count + lane].to_bits());
-    let (mut certain, _, highest) = ray.certain(&filtered);
+    let (mut certain, _, highest) = filtered.certain(ray.lanes, ray.min);
+    let highest = ray.lanes.store(highest);
     while certain != 0 {
         let lane = certain.trailing_zeros() as usize % WIDTH;
         certain &= certain - 1;

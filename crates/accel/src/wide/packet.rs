@@ -1,0 +1,412 @@
+//! The walk of rays that start in one point and go about the same way, together.
+
+use glam::DVec2;
+use lancer_core::geometry::{Interval, Ray};
+use lancer_core::intersector::{Hit, Probe};
+use lancer_core::scene::PrimitiveId;
+
+use super::collapse::WIDTH;
+use super::lanes::{Lanes, Vectors, cross, dot, splat3, sub3};
+use super::walk::{self, Bounds, Filtered, LeafBounds, MOST_PENDING, Stack, U, child, near};
+use super::{Child, Node, Wide};
+
+/// Rays of a packet at most: 8 × 8 pixels.
+const RAYS: usize = 64;
+const VECTORS: usize = RAYS / WIDTH;
+/// The farthest origin, in units of the scene's frame, and the steepest slope.
+const FARTHEST: f64 = 4.0;
+const STEEPEST: f64 = 2.0;
+/// A packet pays where a triangle is at least this part of the packet wide.
+const WIDEST: f64 = 0.25;
+/// Hits that cannot be told apart in `f32`, at most; with more of them each ray goes alone.
+const DOUBTS: usize = 256;
+
+/// Answers all rays: packet by packet where that pays, ray by ray elsewhere.
+#[inline(always)]
+pub(super) fn closest<L: Lanes>(
+    lanes: L,
+    wide: &Wide,
+    rays: &[Ray],
+    range: Interval,
+    hits: &mut [Option<Hit>],
+) {
+    for (rays, hits) in rays.chunks(RAYS).zip(hits.chunks_mut(RAYS)) {
+        if let Some(mut packet) = Packet::new(lanes, wide, rays, range)
+            && packet.pays()
+            && packet.walk()
+        {
+            packet.answer(hits);
+            continue;
+        }
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = walk::closest(lanes, wide, ray, range, &mut ());
+        }
+    }
+}
+
+/// Rays o + t (p, q, σ), where the last axis is that along which all of them go, in the direction σ = ±1:
+/// then t is the depth along this axis.
+///
+/// # Which boxes
+///
+/// With the slopes p between p₀ and p₁ a box is beside the packet if x − o_x − p₁ w > 0 in all of it, w being
+/// the depth, or < 0 with p₀; the same for q. Of the box only one corner counts. Slopes are rounded apart,
+/// and what multiplies the origin is worked out in `f64` with the rounded slopes, so each side errs by
+/// 2⁻²⁴ (6 + 6 D), D = 1 + |o|, for slopes up to 2: less than the pad of 2⁻²⁴ 16 D.
+///
+/// # Which triangles
+///
+/// U, V and Δ of [`Wide`] are linear in the direction: U = d·(f × C), V = d·(C × e), Δ = d·N, and T is the
+/// same for all rays. f × C and C × e are off by 2 (2 + 1) u D s + 4 u D s = 10 u D s, as R there, so the same
+/// bounds hold, and the same comparisons: first for the range of all slopes, eight triangles at a time, then
+/// for what is left eight rays at a time.
+struct Packet<'p, 's, L: Lanes> {
+    lanes: L,
+    wide: &'p Wide<'s>,
+    rays: &'p [Ray],
+    range: Interval,
+    /// The axes of p, q and depth.
+    axes: [usize; 3],
+    sign: f32,
+    /// Slopes of all rays: lowest and highest.
+    low: [f32; 2],
+    high: [f32; 2],
+    bounds: Bounds,
+    origin: [f32; 3],
+    sides: [Side; 4],
+    /// σ, and −σ o along the axis of depth less and more the pad.
+    depth: [f32; 3],
+    /// The row of a node's planes that is met first.
+    nearest: usize,
+    /// A hit must be this far away to be certain.
+    min: f32,
+    slopes: [[[f32; WIDTH]; VECTORS]; 2],
+    valid: [u32; VECTORS],
+    /// Nothing beyond can be the closest hit, of each ray, and of any.
+    max: [[f32; WIDTH]; VECTORS],
+    farthest: f32,
+    /// The closest certain hit so far: its lower end, and whose it is.
+    lowest: [[f32; WIDTH]; VECTORS],
+    best: [[u32; WIDTH]; VECTORS],
+    /// Ray and primitive of what might be closer, or not.
+    doubts: Stack<DOUBTS>,
+}
+
+/// One side of the packet: a box is beside it if `row[other] + factor · row[depth] + offset` > 0, after the
+/// sign of the first.
+#[derive(Clone, Copy)]
+struct Side {
+    row: usize,
+    turned: bool,
+    depth: usize,
+    factor: f32,
+    offset: f32,
+}
+
+const NONE: u32 = u32::MAX;
+
+impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
+    /// `None` if the rays do not start in one point, go too different ways, or come from far away.
+    #[inline(always)]
+    fn new(lanes: L, wide: &'p Wide<'s>, rays: &'p [Ray], range: Interval) -> Option<Self> {
+        let first = rays.first()?;
+        let origin = wide.frame.point(first.origin);
+        let direction = first.direction.to_array();
+        let last = (0..3).max_by(|&a, &b| direction[a].abs().total_cmp(&direction[b].abs()))?;
+        let axes = [(last + 1) % 3, (last + 2) % 3, last];
+        let sign = direction[last].signum();
+        let near_by = origin.abs().max_element() <= FARTHEST;
+        if wide.nodes.is_empty() || !wide.scene.spheres.is_empty() || !near_by {
+            return None;
+        }
+
+        let mut slopes = [[[0.0_f32; WIDTH]; VECTORS]; 2];
+        let mut max = [[0.0_f32; WIDTH]; VECTORS];
+        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        let (mut least, mut min) = (f64::INFINITY, 0.0_f64);
+        let mut alike = true;
+        for (k, ray) in rays.iter().enumerate() {
+            let d = ray.direction.to_array();
+            let along = sign * d[last];
+            let slope = DVec2::new(d[axes[0]], d[axes[1]]) / along;
+            alike &= ray.origin == first.origin && along > 0.0;
+            (low, high) = (low.min(slope), high.max(slope));
+            least = least.min(along);
+            let per_unit = along * wide.frame.to_unit;
+            min = min.max(range.min * per_unit);
+            slopes[0][k / WIDTH][k % WIDTH] = slope.x as f32;
+            slopes[1][k / WIDTH][k % WIDTH] = slope.y as f32;
+            max[k / WIDTH][k % WIDTH] = ((range.max * per_unit) as f32).next_up();
+        }
+        // An accepting comparison: a NaN ends here.
+        let flat = low.min_element() >= -STEEPEST && high.max_element() <= STEEPEST;
+        if !(alike && flat && least > 1e-9 && min < 1e9) {
+            return None;
+        }
+
+        let o = origin.to_array();
+        let (low, high) = (low.as_vec2().to_array(), high.as_vec2().to_array());
+        let (low, high) = (low.map(f32::next_down), high.map(f32::next_up));
+        let reach = 1.0 + origin.abs().max_element() as f32;
+        let pad = f64::from(16.0 * U * reach);
+        let mut sides = [Side { row: 0, turned: false, depth: 0, factor: 0.0, offset: 0.0 }; 4];
+        for (k, side) in sides.iter_mut().enumerate() {
+            let (axis, turned) = (k / 2, k % 2 == 1);
+            let slope = if turned { low[axis] } else { high[axis] };
+            // Beside: turn · (x − o_x − slope w) > 0 with the least x and the most of slope · w.
+            let turn = if turned { -1.0 } else { 1.0 };
+            let factor = -turn * f64::from(slope) * sign;
+            *side = Side {
+                row: 2 * axes[axis] + usize::from(turned),
+                turned,
+                depth: 2 * last + usize::from(factor < 0.0),
+                factor: factor as f32,
+                offset: (-factor * o[last] - turn * o[axes[axis]] - pad) as f32,
+            };
+        }
+        let steepest = low.iter().chain(&high).fold(1.0_f32, |most, slope| most.max(slope.abs()));
+        let valid = std::array::from_fn(|k| match rays.len().saturating_sub(k * WIDTH) {
+            count if count < WIDTH => (1 << count) - 1,
+            _ => 0xff,
+        });
+        Some(Self {
+            lanes,
+            wide,
+            rays,
+            range,
+            axes,
+            sign: sign as f32,
+            low,
+            high,
+            bounds: Bounds::new(reach, steepest),
+            origin: o.map(|x| x as f32),
+            sides,
+            depth: [sign, -sign * o[last] - pad, -sign * o[last] + pad].map(|x| x as f32),
+            nearest: 2 * last + usize::from(sign < 0.0),
+            min: (min as f32).next_up(),
+            slopes,
+            valid,
+            max,
+            farthest: max.iter().flatten().fold(0.0, |most, &max| most.max(max)),
+            lowest: [[f32::INFINITY; WIDTH]; VECTORS],
+            best: [[NONE; WIDTH]; VECTORS],
+            doubts: Stack::new(),
+        })
+    }
+
+    /// Whether the triangles are large enough, judged by what one of the rays hits.
+    #[inline(always)]
+    fn pays(&self) -> bool {
+        let ray = &self.rays[self.rays.len() / 2];
+        let hit = walk::closest(self.lanes, self.wide, ray, self.range, &mut ());
+        let Some(hit) = hit else { return true };
+        let [a, b, c] = self.wide.scene.mesh.corners(hit.primitive.0 as usize);
+        let size = (b - a).abs().max((c - a).abs()).max_element();
+        let depth = hit.t * ray.direction.to_array()[self.axes[2]].abs();
+        let width = (self.high[0] - self.low[0]).max(self.high[1] - self.low[1]);
+        size >= WIDEST * f64::from(width) * depth
+    }
+
+    /// Walks to the leaves that the packet meets, near ones first. Returns whether all is well: not if too
+    /// many hits cannot be told apart.
+    #[inline(always)]
+    fn walk(&mut self) -> bool {
+        let mut stack = Stack::<MOST_PENDING>::new();
+        let mut next = Child::node(0);
+        loop {
+            if next.is_leaf() {
+                if !self.visit_leaf(next) {
+                    return false;
+                }
+            } else {
+                let node = &self.wide.nodes[next.0 as usize];
+                let (near, met) = self.enter(node);
+                if met != 0 {
+                    if met & (met - 1) == 0 {
+                        next = node.children[met.trailing_zeros() as usize % WIDTH];
+                    } else {
+                        next = stack.push_but_nearest(met, &self.lanes.store(near), &node.children);
+                    }
+                    continue;
+                }
+            }
+            next = loop {
+                let Some(entry) = stack.pop() else { return true };
+                if near(entry) <= self.farthest {
+                    break child(entry);
+                }
+            };
+        }
+    }
+
+    /// The depths of eight boxes, and which of them the packet may meet, a bit per lane.
+    #[inline(always)]
+    fn enter(&self, node: &Node) -> (L::F, u32) {
+        let l = self.lanes;
+        let mut beside = l.splat(f32::NEG_INFINITY);
+        for side in &self.sides {
+            let x = l.load(&node.planes[side.row]);
+            let z = l.load(&node.planes[side.depth]);
+            let sum = l.mul_add(z, l.splat(side.factor), l.splat(side.offset));
+            beside = l.max(if side.turned { l.sub(sum, x) } else { l.add(sum, x) }, beside);
+        }
+        let [sign, near, far] = self.depth;
+        let first = l.mul_add(l.load(&node.planes[self.nearest]), l.splat(sign), l.splat(near));
+        let last = l.mul_add(l.load(&node.planes[self.nearest ^ 1]), l.splat(sign), l.splat(far));
+        let first = l.max(first, l.splat(0.0));
+        let zero = l.splat(0.0);
+        let met = l.at_least(zero, beside)
+            & l.at_least(last, zero)
+            & l.at_least(l.splat(self.farthest), first);
+        (first, met)
+    }
+
+    #[inline(always)]
+    fn visit_leaf(&mut self, leaf: Child) -> bool {
+        let l = self.lanes;
+        let count = leaf.count();
+        let words = &self.wide.leaves[leaf.offset()..][..1 + 10 * count];
+        let rows = l.rows::<9>(&words[1..=9 * count], count);
+        let [p, q, w] = self.axes;
+        let a = [rows[p], rows[q], rows[w]];
+        let (e, f) =
+            ([rows[3 + p], rows[3 + q], rows[3 + w]], [rows[6 + p], rows[6 + q], rows[6 + w]]);
+        let c = sub3(l, a, splat3(l, [self.origin[p], self.origin[q], self.origin[w]]));
+        let normal = cross(l, e, f);
+        let t = dot(l, normal, c);
+        let u = self.turned(cross(l, f, c));
+        let v = self.turned(cross(l, c, e));
+        let det = self.turned(normal);
+        let w = sub3(l, sub3(l, det, u), v);
+
+        let bounds = self.bounds.of(l, words[0]);
+        let (u_range, v_range, w_range) = (self.extremes(u), self.extremes(v), self.extremes(w));
+        let most = l.min(u_range.1, l.min(v_range.1, w_range.1));
+        let least = l.max(u_range.0, l.max(v_range.0, w_range.0));
+        let margin = l.add(bounds.e, bounds.e);
+        let mut met = (l.at_least(most, l.sub(l.splat(0.0), margin)) | l.at_least(margin, least))
+            & ((1 << count) - 1);
+        if met == 0 {
+            return true;
+        }
+        let stored = [u[0], u[1], u[2], v[0], v[1], v[2], det[0], det[1], det[2], t];
+        let mut rows = [[0.0; WIDTH]; 10];
+        for (row, x) in rows.iter_mut().zip(stored) {
+            *row = l.store(x);
+        }
+        let mut found = false;
+        while met != 0 {
+            let lane = met.trailing_zeros() as usize % WIDTH;
+            met &= met - 1;
+            let triangle = Triangle {
+                u: [rows[0][lane], rows[1][lane], rows[2][lane]],
+                v: [rows[3][lane], rows[4][lane], rows[5][lane]],
+                det: [rows[6][lane], rows[7][lane], rows[8][lane]],
+                t: rows[9][lane],
+                bounds,
+                id: words[1 + 9 * count + lane].to_bits(),
+            };
+            for vector in 0..self.rays.len().div_ceil(WIDTH) {
+                if self.doubts.lacks_room_for(WIDTH) {
+                    return false;
+                }
+                found |= self.test(&triangle, vector);
+            }
+        }
+        if found {
+            let mut most = l.splat(0.0);
+            for max in &self.max {
+                most = l.max(most, l.load(max));
+            }
+            self.farthest = l.store(most).into_iter().fold(0.0, f32::max);
+        }
+        true
+    }
+
+    /// What multiplies a direction's third component, σ, turned once for all.
+    #[inline(always)]
+    fn turned(&self, [x, y, z]: Vectors<L>) -> Vectors<L> {
+        [x, y, self.lanes.mul(z, self.lanes.splat(self.sign))]
+    }
+
+    /// The least and the most that something linear in the direction is for any of the rays.
+    #[inline(always)]
+    fn extremes(&self, [x, y, z]: Vectors<L>) -> (L::F, L::F) {
+        let (l, [low, high]) = (self.lanes, [self.low, self.high]);
+        let middle = [0.5 * (high[0] + low[0]), 0.5 * (high[1] + low[1])];
+        let half = [0.5 * (high[0] - low[0]), 0.5 * (high[1] - low[1])];
+        let center = l.mul_add(x, l.splat(middle[0]), l.mul_add(y, l.splat(middle[1]), z));
+        let reach = l.mul_add(l.abs(x), l.splat(half[0]), l.mul(l.abs(y), l.splat(half[1])));
+        (l.sub(center, reach), l.add(center, reach))
+    }
+
+    /// What is linear in the direction, for eight rays.
+    #[inline(always)]
+    fn along(&self, [x, y, z]: [f32; 3], vector: usize) -> L::F {
+        let l = self.lanes;
+        let (p, q) = (l.load(&self.slopes[0][vector]), l.load(&self.slopes[1][vector]));
+        l.mul_add(l.splat(x), p, l.mul_add(l.splat(y), q, l.splat(z)))
+    }
+
+    /// Tests eight rays. Returns whether one of them has now a nearer end.
+    #[inline(always)]
+    fn test(&mut self, triangle: &Triangle<L::F>, vector: usize) -> bool {
+        let l = self.lanes;
+        let det = self.along(triangle.det, vector);
+        let (u, v) = (self.along(triangle.u, vector), self.along(triangle.v, vector));
+        let max = l.load(&self.max[vector]);
+        let t = l.splat(triangle.t);
+        let valid = self.valid[vector];
+        let filtered = Filtered::new(l, [u, v, det, t], triangle.bounds, max, valid);
+        if filtered.kept == 0 {
+            return false;
+        }
+        let (certain, lowest, highest) = filtered.certain(l, self.min);
+        // Surely before the closest one so far, which then cannot be it.
+        let before = l.load(&self.lowest[vector]);
+        let nearer = certain & l.above(before, highest);
+        self.lowest[vector] = l.store(l.select(nearer, lowest, before));
+        let shorter = certain & l.above(max, highest);
+        self.max[vector] = l.store(l.select(shorter, highest, max));
+        let mut nearer_left = nearer;
+        while nearer_left != 0 {
+            let lane = nearer_left.trailing_zeros() as usize % WIDTH;
+            nearer_left &= nearer_left - 1;
+            self.best[vector][lane] = triangle.id;
+        }
+        let mut doubtful = filtered.kept & !nearer;
+        while doubtful != 0 {
+            let lane = doubtful.trailing_zeros() as usize % WIDTH;
+            doubtful &= doubtful - 1;
+            self.doubts.push(((vector * WIDTH + lane) as u64) << 32 | u64::from(triangle.id));
+        }
+        shorter != 0
+    }
+
+    /// Lets `f64` decide on what is left.
+    #[inline(always)]
+    fn answer(&mut self, hits: &mut [Option<Hit>]) {
+        let mut doubts = self.doubts.sorted().iter().peekable();
+        for (k, (ray, hit)) in self.rays.iter().zip(hits).enumerate() {
+            let mut probe = Probe::new(self.wide.scene, ray, self.range);
+            let best = self.best[k / WIDTH][k % WIDTH];
+            if best != NONE {
+                probe.test(PrimitiveId(best));
+            }
+            while let Some(doubt) = doubts.next_if(|&&doubt| doubt >> 32 == k as u64) {
+                probe.test(PrimitiveId(*doubt as u32));
+            }
+            *hit = probe.best();
+        }
+    }
+}
+
+/// A triangle as all rays of a packet see it: U, V and Δ by the direction's components, and T.
+struct Triangle<F> {
+    u: [f32; 3],
+    v: [f32; 3],
+    det: [f32; 3],
+    t: f32,
+    bounds: LeafBounds<F>,
+    id: u32,
+}
