@@ -1,14 +1,14 @@
 //! E4.8: eight boxes at once.
 
 use chapter_1::exercises::painted;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use lancer_core::Rgb;
-use lancer_core::geometry::{Bounds3, Interval, Ray};
+use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::sampling::Uniform;
 use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution};
 
-use super::reference::{eight_boxes, near_to_far, slab_test};
+use super::reference::{eight_boxes, near_to_far};
 use super::{Lanes, PreparedRay, Subject};
 
 pub const EXERCISE: Exercise<Subject> = Exercise {
@@ -65,9 +65,8 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                    meets the highest first",
             caught_by: "backwards along each axis",
             mistake: |subject| {
-                subject.eight_boxes = |planes, ray, max| {
-                    clip(planes, ray, [0.0, max], |low, high, near, far| [low + near, high + far])
-                };
+                subject.eight_boxes =
+                    |planes, ray, max| clip(planes, ray, [0.0, max], |low, high, _| [low, high]);
             },
         },
         Mutant {
@@ -76,9 +75,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
             caught_by: "empty lanes",
             mistake: |subject| {
                 subject.eight_boxes = |planes, ray, max| {
-                    clip(planes, ray, [0.0, max], |low, high, near, far| {
-                        [low.min(high) + near, low.max(high) + far]
-                    })
+                    clip(planes, ray, [0.0, max], |low, high, _| [low.min(high), low.max(high)])
                 };
             },
         },
@@ -87,8 +84,8 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
             caught_by: "behind the origin, and around it",
             mistake: |subject| {
                 subject.eight_boxes = |planes, ray, max| {
-                    clip(planes, ray, [f32::NEG_INFINITY, max], |low, high, near, far| {
-                        if high < low { [high + near, low + far] } else { [low + near, high + far] }
+                    clip(planes, ray, [f32::NEG_INFINITY, max], |low, high, turned| {
+                        if turned { [high, low] } else { [low, high] }
                     })
                 };
             },
@@ -101,8 +98,8 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
             },
         },
         Mutant {
-            says: "the near offset serves the last planes as well: a box that is touched is left before it is \
-                   entered, once all is rounded",
+            says: "the near offset is taken for the last planes: a box that is only touched may, once rounded, be left \
+                   before it is entered",
             caught_by: "a corner that eight boxes share",
             mistake: |subject| {
                 subject.eight_boxes = |planes, ray, max| {
@@ -111,8 +108,8 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
             },
         },
         Mutant {
-            says: "the far offset serves the first planes as well: boxes are entered too late, and one that \
-                   begins at max is lost",
+            says: "the far offset is taken for the first planes: boxes are entered too late, and one that begins at \
+                   max is lost",
             caught_by: "up to max, and beyond it",
             mistake: |subject| {
                 subject.eight_boxes = |planes, ray, max| {
@@ -143,19 +140,19 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
     explain: None,
 };
 
-/// A test of eight boxes by the range to clip and by what it says of a slab: from the products of the lowest
-/// and the highest plane with the inverse, and the two offsets, where the slab begins and ends.
+/// A test of eight boxes by the range to clip and by which of a slab's planes it takes for the first and the
+/// last: from the products of the lowest and the highest with the inverse, and whether that is negative.
 fn clip(
     planes: &[Lanes; 6],
     ray: &PreparedRay,
     range: [f32; 2],
-    slab: impl Fn(f32, f32, f32, f32) -> [f32; 2],
+    slab: impl Fn(f32, f32, bool) -> [f32; 2],
 ) -> (Lanes, u32) {
     let ranges: [[f32; 2]; 8] = std::array::from_fn(|lane| {
         (0..3).fold(range, |[near, far], k| {
             let [low, high] = [2 * k, 2 * k + 1].map(|row| planes[row][lane] * ray.inverse[k]);
-            let [first, last] = slab(low, high, ray.near_offset[k], ray.far_offset[k]);
-            [near.max(first), far.min(last)]
+            let [first, last] = slab(low, high, ray.inverse[k] < 0.0);
+            [near.max(first + ray.near_offset[k]), far.min(last + ray.far_offset[k])]
         })
     });
     let bit = |lane: usize| u32::from(ranges[lane][0] <= ranges[lane][1]) << lane;
@@ -198,7 +195,7 @@ fn judge_met(
     if got == wanted { Ok(()) } else { Err(Mismatch::new(case(), shown(got), shown(wanted))) }
 }
 
-/// No pad of the checks' rays is larger than this, as a part of t.
+/// The pad of no ray of the checks moves a t by more than this.
 const SLACK: f64 = 1e-4;
 
 /// A ray may enter a box too early by the pad, but never too late, since the box might then be skipped.
@@ -210,8 +207,8 @@ fn judge_near(case: impl Fn() -> String, got: f32, wanted: f64) -> Result<(), Mi
     if wanted > 0.0 {
         text += ", or up to 0.0001 less";
     }
-    if got > wanted && got - wanted < SLACK {
-        text = format!("no more than {text}; this is {} too late", (got - wanted).shown());
+    if (0.0..SLACK).contains(&(got - wanted)) {
+        text += &format!("; this is {} too late", (got - wanted).shown());
     }
     Err(Mismatch::new(case() + ": t", got.shown(), text))
 }
@@ -269,11 +266,11 @@ fn backwards(subject: &Subject) -> Result<(), Mismatch> {
 }
 
 fn empty(subject: &Subject) -> Result<(), Mismatch> {
-    let (mut boxes, Ray { origin, direction, .. }, mut t) = scattered();
+    let (mut boxes, ray, mut t) = scattered();
     for lane in [0, 5, 7] {
         (boxes[lane], t[lane]) = (None, None);
     }
-    compare(subject, &boxes, &Ray::new(origin, direction), 8.0, t)?;
+    compare(subject, &boxes, &ray, 8.0, t)?;
     for direction in [DVec3::ONE, DVec3::NEG_ONE, DVec3::X, DVec3::NEG_Y] {
         for max in [8.0, f32::INFINITY] {
             let ray = Ray::new(DVec3::ZERO, direction);
@@ -359,21 +356,21 @@ fn corner(subject: &Subject) -> Result<(), Mismatch> {
         });
         let max = t as f32;
         let (near, met) = (subject.eight_boxes)(&rows(&boxes), &PreparedRay::new(&ray), max);
-        for lane in 0..8 {
-            let text =
+        for (lane, near) in near.into_iter().enumerate() {
+            let case =
                 || case(lane, &boxes, &ray, max) + ", where it is in the corner " + &point.shown();
-            judge_met(text, met, lane, true)?;
-            if near[lane] > max {
-                let late = (near[lane] - max).into();
-                let wanted = format!("no more than max; this is {} too late", f64::shown(&late));
-                return Err(Mismatch::new(text() + ": t", f64::from(near[lane]).shown(), wanted));
+            judge_met(case, met, lane, true)?;
+            if near > max {
+                let late = f64::from(near - max).shown();
+                let wanted = format!("no more than max; this is {late} too late");
+                return Err(Mismatch::new(case() + ": t", f64::from(near).shown(), wanted));
             }
         }
     }
     Ok(())
 }
 
-/// By how much the pad may move a plane, as seen by the checks' rays.
+/// Nor does it move a plane by more than this.
 const PAD: f64 = 1e-5;
 
 /// What `f64` meets must be met, and nothing that it misses by more than the pad.
@@ -384,23 +381,26 @@ fn one_by_one(subject: &Subject) -> Result<(), Mismatch> {
     for _ in 0..500 {
         let boxes: Boxes = std::array::from_fn(|_| {
             let (a, b) = (2.0 * point(), point());
-            let b = (a + b).clamp(glam::Vec3::NEG_ONE, glam::Vec3::ONE);
+            let b = (a + b).clamp(Vec3::NEG_ONE, Vec3::ONE);
             Some(Bounds3 { min: a.min(b).as_dvec3(), max: a.max(b).as_dvec3() })
         });
         let origin = 3.0 * point().as_dvec3();
         let direction = (1.5 * point().as_dvec3() - origin).normalize();
         let direction = direction.abs().max(DVec3::splat(0.125)).copysign(direction);
         let ray = Ray::new(origin, direction);
+        let slabs = Slabs::new(&ray);
         let (near, met) = (subject.eight_boxes)(&rows(&boxes), &PreparedRay::new(&ray), 2.0);
         for lane in 0..8 {
             let case = || case(lane, &boxes, &ray, 2.0);
             let Some(Bounds3 { min, max }) = boxes[lane] else { continue };
             let grown = Bounds3 { min: min - PAD, max: max + PAD };
-            let range = |max| Interval { min: 0.0, max };
-            if let Some(t) = slab_test(&Bounds3 { min, max }, &ray, range(2.0)) {
+            let enter = |bounds: Bounds3, end| {
+                slabs.enter(bounds.min, bounds.max, Interval { min: 0.0, max: end })
+            };
+            if let Some(t) = enter(Bounds3 { min, max }, 2.0) {
                 judge_met(case, met, lane, true)?;
                 judge_near(case, near[lane], t)?;
-            } else if slab_test(&grown, &ray, range(2.0 + SLACK)).is_none() {
+            } else if enter(grown, 2.0 + SLACK).is_none() {
                 judge_met(case, met, lane, false)?;
             }
         }
@@ -491,7 +491,7 @@ impl Nodes {
     }
 }
 
-/// Left the distance of the boxes, right the number of nodes tested, red from 6 on.
+/// Left the distance of the boxes, right the number of nodes tested, red from 5 on.
 fn draw(subject: &Subject) -> Image {
     let nodes = Nodes::new();
     let eye = DVec3::new(1.3, 1.7, 2.6);
@@ -500,11 +500,11 @@ fn draw(subject: &Subject) -> Image {
     let up = right.cross(ahead);
     painted(ImageSize::new(320, 160), |x, y| {
         let at = right * (x % 160.0 - 80.0) + up * (80.0 - y);
-        let (t, tested) = nodes.look(subject, &Ray::new(eye, ahead + at / 140.0));
+        let (t, tested) = nodes.look(subject, &Ray::new(eye, ahead + at / 175.0));
         if x < 160.0 {
             return Rgb::splat(((4.4 - f64::from(t)) / 3.0).max(0.0));
         }
-        let part = (f64::from(tested - 1) / 5.0).min(1.0);
+        let part = (f64::from(tested - 1) / 4.0).min(1.0);
         Rgb::new(part, 0.7 * part * (1.0 - part), 0.5 * (1.0 - part))
     })
 }
