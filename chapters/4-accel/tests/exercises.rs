@@ -15,6 +15,7 @@ mod stubs {
     pub mod e05_dda_step;
     pub mod e06_kd_plane;
     pub mod e07_brute_force;
+    pub mod e08_eight_boxes;
 }
 
 /// The stubs as they are handed out: their functions have the types that the course asks for.
@@ -27,6 +28,8 @@ const STUB: Subject = Subject {
     next_cell: stubs::e05_dda_step::next_cell,
     plane_sides: stubs::e06_kd_plane::plane_sides,
     search_cells: stubs::e07_brute_force::search_cells,
+    eight_boxes: stubs::e08_eight_boxes::eight_boxes,
+    near_to_far: stubs::e08_eight_boxes::near_to_far,
 };
 
 #[test]

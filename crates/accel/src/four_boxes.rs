@@ -83,14 +83,14 @@ impl FrameBox {
 /// Where the nodes' coordinates live: the scene's box, moved to the origin and scaled into [−1, 1]³.
 /// There `f32` neither overflows nor loses digits to the scene's position.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Frame {
+pub struct Frame {
     center: DVec3,
     pub(crate) to_unit: f64,
 }
 
 impl Frame {
     /// The frame of a scene within `bounds`.
-    pub(crate) fn of(bounds: Bounds3) -> Self {
+    pub fn of(bounds: Bounds3) -> Self {
         if bounds.is_empty() {
             return Self { center: DVec3::ZERO, to_unit: 1.0 };
         }
@@ -128,7 +128,7 @@ impl Frame {
     }
 }
 
-/// A ray prepared for conservative `f32` tests of [`FourBoxes`].
+/// A ray prepared for conservative `f32` tests of boxes, four or eight at a time.
 ///
 /// A slab is t = plane · inverse + offset. Rounding the origin and the direction to `f32`, the
 /// inverse and the two operations moves a plane by less than 8 u (1 + |origin|), u = 2⁻²⁴: the product
@@ -137,12 +137,15 @@ impl Frame {
 /// box is entered too early or left too late, never missed. A direction component near 0 is replaced by
 /// a tiny one of its sign: then no 0 · ∞ = NaN can arise.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FourSlabs {
+pub struct FourSlabs {
     /// Per axis: the ray travels towards smaller coordinates.
     negative: [bool; 3],
-    pub(crate) inverse: Vec3A,
-    pub(crate) near_offset: Vec3A,
-    pub(crate) far_offset: Vec3A,
+    /// 1 / direction, never infinite.
+    pub inverse: Vec3A,
+    /// −origin · inverse, less the pad.
+    pub near_offset: Vec3A,
+    /// The same, and the pad more.
+    pub far_offset: Vec3A,
     /// The ray itself, rounded, for tests of triangles.
     pub(crate) origin: Vec3A,
     pub(crate) direction: Vec3A,
@@ -160,7 +163,7 @@ const PAD: f32 = 8.0 * 0.5 * f32::EPSILON;
 impl FourSlabs {
     /// Prepares the tests of a ray.
     #[inline]
-    pub(crate) fn new(ray: &Ray, frame: &Frame) -> Self {
+    pub fn new(ray: &Ray, frame: &Frame) -> Self {
         let origin = frame.point(ray.origin);
         let length_squared = ray.direction.length_squared();
         if origin.length_squared() <= 16.0 && length_squared > 1e-18 && length_squared < 1e18 {

@@ -29,6 +29,7 @@ pub use binary_tree::{BinaryTree, TreeStatistics};
 pub use bsp::{BspBuilder, BspTree, Planes};
 pub use bvh::{Bvh, Split, split_at_median};
 pub use cells::Cell;
+pub use four_boxes::{FourSlabs, Frame};
 pub use grid::{Grid, GridBuilder, Lattice};
 pub use kd::{KdBuilder, KdTree, Sides};
 pub use obvhs_bvh2::ObvhsBvh2;

@@ -5,4 +5,4 @@ pub use lancer_accel::{Cell, Lattice, Sides};
 pub use lancer_core::geometry::{Bounds3, Interval, Ray};
 pub use lancer_core::scene::PrimitiveId;
 
-pub use super::{Item, Met, Test, Walk};
+pub use super::{Item, Lanes, Met, PreparedRay, Test, Walk};

@@ -4,7 +4,7 @@ use glam::IVec3;
 use lancer_accel::{Cell, Lattice, Sides, split_at_median};
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
 
-use super::{Item, Met, Subject, Test, Walk};
+use super::{Item, Lanes, Met, PreparedRay, Subject, Test, Walk};
 
 /// All of them.
 pub const SUBJECT: Subject = Subject {
@@ -16,6 +16,8 @@ pub const SUBJECT: Subject = Subject {
     next_cell,
     plane_sides,
     search_cells,
+    eight_boxes,
+    near_to_far,
 };
 
 /// [`Subject::slab_test`].
@@ -89,4 +91,26 @@ pub fn search_cells(cells: &[Cell], test: &mut Test) -> Option<Met> {
         }
     }
     best
+}
+
+/// [`Subject::eight_boxes`].
+pub fn eight_boxes(planes: &[Lanes; 6], ray: &PreparedRay, max: f32) -> (Lanes, u32) {
+    let (mut near, mut far) = ([0.0_f32; 8], [max; 8]);
+    for axis in 0..3 {
+        let inverse = ray.inverse[axis];
+        let first = 2 * axis + usize::from(inverse < 0.0);
+        let (first, last) = (planes[first], planes[first ^ 1]);
+        for lane in 0..8 {
+            near[lane] = near[lane].max(first[lane] * inverse + ray.near_offset[axis]);
+            far[lane] = far[lane].min(last[lane] * inverse + ray.far_offset[axis]);
+        }
+    }
+    (near, (0..8).fold(0, |met, lane| met | u32::from(near[lane] <= far[lane]) << lane))
+}
+
+/// [`Subject::near_to_far`].
+pub fn near_to_far(near: &Lanes, met: u32) -> Vec<usize> {
+    let mut lanes: Vec<usize> = (0..8).filter(|lane| met >> lane & 1 == 1).collect();
+    lanes.sort_by(|&a, &b| near[a].total_cmp(&near[b]));
+    lanes
 }
