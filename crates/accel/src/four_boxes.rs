@@ -156,38 +156,56 @@ pub struct FourSlabs {
     skipped: f64,
 }
 
+/// A ray far from a frame, moved close to it: see [`FourSlabs`].
+struct Placed {
+    origin: DVec3,
+    direction: DVec3,
+    moved: f32,
+    per_unit: f64,
+    skipped: f64,
+}
+
+impl Placed {
+    /// A direction of extreme length is scaled. An origin far outside would pad the boxes into
+    /// nothing: it moves close to the scene, and the rounding of that counts as well.
+    #[cold]
+    #[inline(never)]
+    fn from_afar(ray: &Ray, frame: &Frame) -> Self {
+        let origin = frame.point(ray.origin);
+        let longest = ray.direction.abs().max_element();
+        let direction = ray.direction / longest;
+        let away = origin.length();
+        let skipped = if away < 2.0 { 0.0 } else { (away - 2.0) / direction.length() };
+        Self {
+            origin: origin + skipped * direction,
+            direction,
+            moved: (8.0 * f64::EPSILON * away) as f32,
+            per_unit: frame.to_unit * longest,
+            skipped,
+        }
+    }
+}
+
 /// Components of a direction below this count as this; the largest is at least 2³⁰ times as long.
 const TINY: f32 = 1e-20;
 const PAD: f32 = 8.0 * 0.5 * f32::EPSILON;
 
 impl FourSlabs {
     /// Prepares the tests of a ray.
-    #[inline]
+    #[inline(always)] // Written to memory and read back in other pieces it costs as much as a node.
     pub fn new(ray: &Ray, frame: &Frame) -> Self {
         let origin = frame.point(ray.origin);
         let length_squared = ray.direction.length_squared();
-        if origin.length_squared() <= 16.0 && length_squared > 1e-18 && length_squared < 1e18 {
-            Self::prepare(origin, ray.direction, 0.0, frame.to_unit, 0.0)
+        let is_near =
+            origin.length_squared() <= 16.0 && length_squared > 1e-18 && length_squared < 1e18;
+        // The usual case stays in registers.
+        let (origin, direction, moved, per_unit, skipped) = if is_near {
+            (origin, ray.direction, 0.0, frame.to_unit, 0.0)
         } else {
-            Self::from_afar(origin, ray.direction, frame)
-        }
-    }
+            let placed = Placed::from_afar(ray, frame);
+            (placed.origin, placed.direction, placed.moved, placed.per_unit, placed.skipped)
+        };
 
-    /// A direction of extreme length is scaled. An origin far outside would pad the boxes into
-    /// nothing: it moves close to the scene, and the rounding of that counts as well.
-    #[cold]
-    fn from_afar(origin: DVec3, direction: DVec3, frame: &Frame) -> Self {
-        let longest = direction.abs().max_element();
-        let direction = direction / longest;
-        let away = origin.length();
-        let skip = if away < 2.0 { 0.0 } else { (away - 2.0) / direction.length() };
-        let rounding = 8.0 * f64::EPSILON * away;
-        let origin = origin + skip * direction;
-        Self::prepare(origin, direction, rounding as f32, frame.to_unit * longest, skip)
-    }
-
-    #[inline(always)]
-    fn prepare(origin: DVec3, direction: DVec3, moved: f32, per_unit: f64, skipped: f64) -> Self {
         let (origin, direction) = (origin.as_vec3a(), direction.as_vec3a());
         let inverse = direction.abs().max(Vec3A::splat(TINY)).copysign(direction).recip();
         let widen = ((origin.abs() + 1.0) * PAD + moved) * inverse.abs();

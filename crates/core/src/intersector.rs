@@ -231,7 +231,7 @@ impl<'s> Probe<'s> {
     }
 
     /// Tests one primitive and keeps it if it wins. Returns whether it was met at all.
-    #[inline]
+    #[inline(always)]
     pub fn test(&mut self, primitive: PrimitiveId) -> bool {
         let Some((t, barycentric)) = self.intersect(primitive) else { return false };
         let wins = t < self.range.max
@@ -244,7 +244,7 @@ impl<'s> Probe<'s> {
         false
     }
 
-    #[inline]
+    #[inline(always)]
     fn intersect(&mut self, primitive: PrimitiveId) -> Option<(f64, DVec3)> {
         let index = primitive.0 as usize;
         let triangles = self.scene.mesh.triangles.len();
