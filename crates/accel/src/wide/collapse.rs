@@ -185,10 +185,10 @@ fn push_leaf(
 }
 
 impl Node {
-    fn set_box(&mut self, lane: usize, bounds: FrameBox) {
+    pub(super) fn set_box(&mut self, lane: usize, bounds: FrameBox) {
         for axis in 0..3 {
-            self.planes[2 * axis][lane] = bounds.min[axis];
-            self.planes[2 * axis + 1][lane] = bounds.max[axis];
+            self.planes[axis][0][lane] = bounds.min[axis];
+            self.planes[axis][1][lane] = bounds.max[axis];
         }
     }
 

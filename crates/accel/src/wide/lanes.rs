@@ -34,6 +34,8 @@ pub(super) trait Lanes: Copy {
     fn above(self, a: Self::F, b: Self::F) -> u32;
     /// `a` in the lanes whose bit is set, `b` in the others.
     fn select(self, bits: u32, a: Self::F, b: Self::F) -> Self::F;
+    /// Brings what will be read soon into the caches.
+    fn prefetch<T>(self, soon: &T);
 }
 
 /// Three coordinates, or directions, of eight things.
@@ -170,6 +172,9 @@ impl Lanes for Scalar {
     fn select(self, bits: u32, a: [f32; 8], b: [f32; 8]) -> [f32; 8] {
         each(|k| if bits >> k & 1 != 0 { a[k] } else { b[k] })
     }
+
+    #[inline(always)]
+    fn prefetch<T>(self, _: &T) {}
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -312,6 +317,11 @@ pub(super) mod avx2 {
                 let mask = _mm256_cmpeq_epi32(set, lanes);
                 _mm256_blendv_ps(b, a, _mm256_castsi256_ps(mask))
             }
+        }
+
+        #[inline(always)]
+        fn prefetch<T>(self, soon: &T) {
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(soon).cast()) }
         }
     }
 }

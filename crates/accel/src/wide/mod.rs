@@ -109,19 +109,19 @@ impl Kernel {
 #[repr(align(64))]
 #[derive(Clone, Debug)]
 struct Node {
-    /// Lowest x, highest x, lowest y, …
-    planes: [[f32; WIDTH]; 6],
+    /// Per axis the lowest coordinates and the highest.
+    planes: [[[f32; WIDTH]; 2]; 3],
     children: [Child; WIDTH],
 }
 
 impl Node {
     const EMPTY: Self = {
         let (low, high) = ([f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]);
-        Self { planes: [low, high, low, high, low, high], children: [Child(0); WIDTH] }
+        Self { planes: [[low, high]; 3], children: [Child(0); WIDTH] }
     };
 
     fn bounds(&self, lane: usize) -> FrameBox {
-        let [x, y, z] = [0, 2, 4].map(|k| [self.planes[k][lane], self.planes[k + 1][lane]]);
+        let [x, y, z] = self.planes.map(|[low, high]| [low[lane], high[lane]]);
         FrameBox { min: [x[0], y[0], z[0]].into(), max: [x[1], y[1], z[1]].into() }
     }
 }

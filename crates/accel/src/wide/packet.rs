@@ -60,7 +60,7 @@ pub(super) fn closest<L: Lanes>(
 /// same for all rays. f × C and C × e are off by 2 (2 + 1) u D s + 4 u D s = 10 u D s, as R there, so the same
 /// bounds hold, and the same comparisons: first for the range of all slopes, eight triangles at a time, then
 /// for what is left eight rays at a time.
-struct Packet<'p, 's, L: Lanes> {
+pub(super) struct Packet<'p, 's, L: Lanes> {
     lanes: L,
     wide: &'p Wide<'s>,
     rays: &'p [Ray],
@@ -68,16 +68,15 @@ struct Packet<'p, 's, L: Lanes> {
     /// The axes of p, q and depth.
     axes: [usize; 3],
     sign: f32,
-    /// Slopes of all rays: lowest and highest.
-    low: [f32; 2],
-    high: [f32; 2],
+    /// Of all rays.
+    spread: Spread<f32>,
+    /// Of each vector: the middle of p and of q, and half their ranges.
+    spreads: [[[f32; WIDTH]; 2]; 2],
     bounds: Bounds,
     origin: [f32; 3],
     sides: [Side; 4],
     /// σ, and −σ o along the axis of depth less and more the pad.
     depth: [f32; 3],
-    /// The row of a node's planes that is met first.
-    nearest: usize,
     /// A hit must be this far away to be certain.
     min: f32,
     slopes: [[[f32; WIDTH]; VECTORS]; 2],
@@ -92,13 +91,12 @@ struct Packet<'p, 's, L: Lanes> {
     doubts: Stack<DOUBTS>,
 }
 
-/// One side of the packet: a box is beside it if `row[other] + factor · row[depth] + offset` > 0, after the
-/// sign of the first.
+/// One side of the packet: a box is beside it if ±x + `factor` · z + `offset` > 0, x being the box's lowest
+/// coordinate (+) or its highest (−, turned) on the axis of the slope, z the one on the axis of depth that makes
+/// the sum small.
 #[derive(Clone, Copy)]
 struct Side {
-    row: usize,
     turned: bool,
-    depth: usize,
     factor: f32,
     offset: f32,
 }
@@ -108,7 +106,12 @@ const NONE: u32 = u32::MAX;
 impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
     /// `None` if the rays do not start in one point, go too different ways, or come from far away.
     #[inline(always)]
-    fn new(lanes: L, wide: &'p Wide<'s>, rays: &'p [Ray], range: Interval) -> Option<Self> {
+    pub(super) fn new(
+        lanes: L,
+        wide: &'p Wide<'s>,
+        rays: &'p [Ray],
+        range: Interval,
+    ) -> Option<Self> {
         let first = rays.first()?;
         let origin = wide.frame.point(first.origin);
         let direction = first.direction.to_array();
@@ -149,7 +152,21 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
         let (low, high) = (low.map(f32::next_down), high.map(f32::next_up));
         let reach = 1.0 + origin.abs().max_element() as f32;
         let pad = f64::from(16.0 * U * reach);
-        let mut sides = [Side { row: 0, turned: false, depth: 0, factor: 0.0, offset: 0.0 }; 4];
+        let mut spreads = [[[f32::NAN; WIDTH]; 2]; 2];
+        for (k, rays) in rays.chunks(WIDTH).enumerate() {
+            let (mut low, mut high) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
+            for axis in 0..2 {
+                for slope in &slopes[axis][k][..rays.len()] {
+                    (low[axis], high[axis]) = (low[axis].min(*slope), high[axis].max(*slope));
+                }
+            }
+            let spread = Spread::between(low, high);
+            for axis in 0..2 {
+                spreads[0][axis][k] = spread.middle[axis];
+                spreads[1][axis][k] = spread.half[axis];
+            }
+        }
+        let mut sides = [Side { turned: false, factor: 0.0, offset: 0.0 }; 4];
         for (k, side) in sides.iter_mut().enumerate() {
             let (axis, turned) = (k / 2, k % 2 == 1);
             let slope = if turned { low[axis] } else { high[axis] };
@@ -157,9 +174,7 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
             let turn = if turned { -1.0 } else { 1.0 };
             let factor = -turn * f64::from(slope) * sign;
             *side = Side {
-                row: 2 * axes[axis] + usize::from(turned),
                 turned,
-                depth: 2 * last + usize::from(factor < 0.0),
                 factor: factor as f32,
                 offset: (-factor * o[last] - turn * o[axes[axis]] - pad) as f32,
             };
@@ -176,13 +191,12 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
             range,
             axes,
             sign: sign as f32,
-            low,
-            high,
+            spread: Spread::between(low, high),
+            spreads,
             bounds: Bounds::new(reach, steepest),
             origin: o.map(|x| x as f32),
             sides,
             depth: [sign, -sign * o[last] - pad, -sign * o[last] + pad].map(|x| x as f32),
-            nearest: 2 * last + usize::from(sign < 0.0),
             min: (min as f32).next_up(),
             slopes,
             valid,
@@ -203,14 +217,14 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
         let [a, b, c] = self.wide.scene.mesh.corners(hit.primitive.0 as usize);
         let size = (b - a).abs().max((c - a).abs()).max_element();
         let depth = hit.t * ray.direction.to_array()[self.axes[2]].abs();
-        let width = (self.high[0] - self.low[0]).max(self.high[1] - self.low[1]);
+        let width = 2.0 * self.spread.half[0].max(self.spread.half[1]);
         size >= WIDEST * f64::from(width) * depth
     }
 
     /// Walks to the leaves that the packet meets, near ones first. Returns whether all is well: not if too
     /// many hits cannot be told apart.
     #[inline(always)]
-    fn walk(&mut self) -> bool {
+    pub(super) fn walk(&mut self) -> bool {
         let mut stack = Stack::<MOST_PENDING>::new();
         let mut next = Child::node(0);
         loop {
@@ -244,15 +258,17 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
     fn enter(&self, node: &Node) -> (L::F, u32) {
         let l = self.lanes;
         let mut beside = l.splat(f32::NEG_INFINITY);
-        for side in &self.sides {
-            let x = l.load(&node.planes[side.row]);
-            let z = l.load(&node.planes[side.depth]);
+        let [x_rows, y_rows, z_rows] = self.axes.map(|axis| &node.planes[axis % 3]);
+        for (side, rows) in self.sides.iter().zip([x_rows, x_rows, y_rows, y_rows]) {
+            let x = l.load(&rows[usize::from(side.turned)]);
+            let z = l.load(&z_rows[usize::from(side.factor < 0.0)]);
             let sum = l.mul_add(z, l.splat(side.factor), l.splat(side.offset));
             beside = l.max(if side.turned { l.sub(sum, x) } else { l.add(sum, x) }, beside);
         }
         let [sign, near, far] = self.depth;
-        let first = l.mul_add(l.load(&node.planes[self.nearest]), l.splat(sign), l.splat(near));
-        let last = l.mul_add(l.load(&node.planes[self.nearest ^ 1]), l.splat(sign), l.splat(far));
+        let nearest = usize::from(sign < 0.0);
+        let first = l.mul_add(l.load(&z_rows[nearest]), l.splat(sign), l.splat(near));
+        let last = l.mul_add(l.load(&z_rows[1 - nearest]), l.splat(sign), l.splat(far));
         let first = l.max(first, l.splat(0.0));
         let zero = l.splat(0.0);
         let met = l.at_least(zero, beside)
@@ -277,15 +293,13 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
         let u = self.turned(cross(l, f, c));
         let v = self.turned(cross(l, c, e));
         let det = self.turned(normal);
-        let w = sub3(l, sub3(l, det, u), v);
 
         let bounds = self.bounds.of(l, words[0]);
-        let (u_range, v_range, w_range) = (self.extremes(u), self.extremes(v), self.extremes(w));
-        let most = l.min(u_range.1, l.min(v_range.1, w_range.1));
-        let least = l.max(u_range.0, l.max(v_range.0, w_range.0));
-        let margin = l.add(bounds.e, bounds.e);
-        let mut met = (l.at_least(most, l.sub(l.splat(0.0), margin)) | l.at_least(margin, least))
-            & ((1 << count) - 1);
+        let spread = Spread {
+            middle: [l.splat(self.spread.middle[0]), l.splat(self.spread.middle[1])],
+            half: [l.splat(self.spread.half[0]), l.splat(self.spread.half[1])],
+        };
+        let mut met = spread.may_meet(l, [u, v, det], bounds) & ((1 << count) - 1);
         if met == 0 {
             return true;
         }
@@ -306,7 +320,10 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
                 bounds,
                 id: words[1 + 9 * count + lane].to_bits(),
             };
-            for vector in 0..self.rays.len().div_ceil(WIDTH) {
+            let mut vectors = self.vectors_that_may_meet(&triangle);
+            while vectors != 0 {
+                let vector = vectors.trailing_zeros() as usize % VECTORS;
+                vectors &= vectors - 1;
                 if self.doubts.lacks_room_for(WIDTH) {
                     return false;
                 }
@@ -329,15 +346,15 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
         [x, y, self.lanes.mul(z, self.lanes.splat(self.sign))]
     }
 
-    /// The least and the most that something linear in the direction is for any of the rays.
+    /// A bit for each vector of rays.
     #[inline(always)]
-    fn extremes(&self, [x, y, z]: Vectors<L>) -> (L::F, L::F) {
-        let (l, [low, high]) = (self.lanes, [self.low, self.high]);
-        let middle = [0.5 * (high[0] + low[0]), 0.5 * (high[1] + low[1])];
-        let half = [0.5 * (high[0] - low[0]), 0.5 * (high[1] - low[1])];
-        let center = l.mul_add(x, l.splat(middle[0]), l.mul_add(y, l.splat(middle[1]), z));
-        let reach = l.mul_add(l.abs(x), l.splat(half[0]), l.mul(l.abs(y), l.splat(half[1])));
-        (l.sub(center, reach), l.add(center, reach))
+    fn vectors_that_may_meet(&self, triangle: &Triangle<L::F>) -> u32 {
+        let l = self.lanes;
+        let [[p, q], [half_p, half_q]] = &self.spreads;
+        let spread =
+            Spread { middle: [l.load(p), l.load(q)], half: [l.load(half_p), l.load(half_q)] };
+        let rows = [splat3(l, triangle.u), splat3(l, triangle.v), splat3(l, triangle.det)];
+        spread.may_meet(l, rows, triangle.bounds)
     }
 
     /// What is linear in the direction, for eight rays.
@@ -385,7 +402,7 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
 
     /// Lets `f64` decide on what is left.
     #[inline(always)]
-    fn answer(&mut self, hits: &mut [Option<Hit>]) {
+    pub(super) fn answer(&mut self, hits: &mut [Option<Hit>]) {
         let mut doubts = self.doubts.sorted().iter().peekable();
         for (k, (ray, hit)) in self.rays.iter().zip(hits).enumerate() {
             let mut probe = Probe::new(self.wide.scene, ray, self.range);
@@ -398,6 +415,49 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
             }
             *hit = probe.best();
         }
+    }
+}
+
+/// Between which slopes rays go.
+#[derive(Clone, Copy)]
+struct Spread<F> {
+    middle: [F; 2],
+    half: [F; 2],
+}
+
+impl Spread<f32> {
+    fn between(low: [f32; 2], high: [f32; 2]) -> Self {
+        Self {
+            middle: [0.5 * (high[0] + low[0]), 0.5 * (high[1] + low[1])],
+            half: [0.5 * (high[0] - low[0]), 0.5 * (high[1] - low[1])],
+        }
+    }
+}
+
+impl<F: Copy> Spread<F> {
+    /// Which triangles, of given U, V and Δ, some of the rays may meet: all three weights must reach 0 on one
+    /// side, by twice their bound.
+    #[inline(always)]
+    fn may_meet<L: Lanes<F = F>>(
+        &self,
+        l: L,
+        [u, v, det]: [Vectors<L>; 3],
+        bounds: LeafBounds<F>,
+    ) -> u32 {
+        let w = sub3(l, sub3(l, det, u), v);
+        let (u, v, w) = (self.extremes(l, u), self.extremes(l, v), self.extremes(l, w));
+        let most = l.min(u.1, l.min(v.1, w.1));
+        let least = l.max(u.0, l.max(v.0, w.0));
+        let margin = l.add(bounds.e, bounds.e);
+        l.at_least(most, l.sub(l.splat(0.0), margin)) | l.at_least(margin, least)
+    }
+
+    /// The least and the most of what is linear in the direction.
+    #[inline(always)]
+    fn extremes<L: Lanes<F = F>>(&self, l: L, [x, y, z]: Vectors<L>) -> (F, F) {
+        let center = l.mul_add(x, self.middle[0], l.mul_add(y, self.middle[1], z));
+        let reach = l.mul_add(l.abs(x), self.half[0], l.mul(l.abs(y), self.half[1]));
+        (l.sub(center, reach), l.add(center, reach))
     }
 }
 

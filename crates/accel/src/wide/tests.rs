@@ -1,10 +1,11 @@
 use glam::DVec3;
 use lancer_core::generate::icosphere;
-use lancer_core::intersector::TestCounts;
+use lancer_core::intersector::{LinearScan, TestCounts};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 
 use super::lanes::Lanes;
+use super::packet::Packet;
 use super::walk::WideRay;
 use super::*;
 use crate::four_boxes::FourSlabs;
@@ -40,7 +41,7 @@ fn a_validation_finds_what_is_wrong() {
     };
     let small = broken(&|wide| {
         let (node, _) = leaf(wide);
-        wide.nodes[node].planes[1][0] = wide.nodes[node].planes[0][0];
+        wide.nodes[node].planes[0][1][0] = wide.nodes[node].planes[0][0][0];
     });
     assert!(small.contains("sticks out"), "{small}");
     let twice = broken(&|wide| {
@@ -51,9 +52,7 @@ fn a_validation_finds_what_is_wrong() {
     assert!(twice.ends_with("is in two leaves"), "{twice}");
     let missing = broken(&|wide| {
         let (node, _) = leaf(wide);
-        for planes in 0..6 {
-            wide.nodes[node].planes[planes][0] = Node::EMPTY.planes[planes][0];
-        }
+        wide.nodes[node].set_box(0, FrameBox::EMPTY);
     });
     assert!(missing.ends_with("is in no leaf"), "{missing}");
 }
@@ -143,12 +142,13 @@ fn filter_first<L: Lanes>(lanes: L, wide: &Wide, ray: &Ray) -> Option<(FourSlabs
         Some((leaf, lane))
     })?;
     let words = &wide.leaves[leaf.offset()..][..1 + 10 * leaf.count()];
-    let filtered = wide_ray.filter(words, leaf.count(), f32::INFINITY);
+    let filtered = wide_ray.filter(words, leaf.count(), lanes.splat(f32::INFINITY));
     if filtered.kept >> lane & 1 == 0 {
         return None;
     }
-    let (certain, lowest, highest) = wide_ray.certain(&filtered);
-    Some((wide_ray.slabs, certain >> lane & 1 != 0, lowest[lane], highest[lane]))
+    let (certain, lowest, highest) = filtered.certain(lanes, wide_ray.min);
+    let (lowest, highest) = (lanes.store(lowest)[lane], lanes.store(highest)[lane]);
+    Some((wide_ray.slabs, certain >> lane & 1 != 0, lowest, highest))
 }
 
 /// The walk goes down to what the ray meets, and to little else.
@@ -163,4 +163,88 @@ fn a_ray_in_the_open_asks_little() {
         // Four levels of eight boxes, a leaf or two.
         assert!(counts.boxes <= 8 * 8 && counts.primitives <= 24, "{counts:?}");
     }
+}
+
+/// What rays from one point meet, together: aimed at the corners, edges and inside of one triangle and its
+/// like, from outside, from a corner, along an axis and from within.
+#[test]
+fn a_packet_answers_as_brute_force() {
+    let mut random = Pcg64::new(5, 9);
+    let mut number = move || f64::from(random.next_u32()) / f64::from(u32::MAX);
+    let (mut together, mut hits) = (0, 0);
+    for offset in [DVec3::ZERO, DVec3::new(148_376.0, 1234.0, -223_423.0)] {
+        let mut mesh = icosphere(3);
+        // Every face of an inner sphere twice: ties decide.
+        for _ in 0..2 {
+            mesh.append(&icosphere(2), glam::DAffine3::from_scale(DVec3::splat(0.5)), 0);
+        }
+        for position in &mut mesh.positions {
+            *position += offset;
+        }
+        let scene = Scene::of_mesh(mesh);
+        let oracle = LinearScan::new(&scene);
+        for k in 0..300 {
+            let mut vector = || DVec3::new(number(), number(), number()) * 2.0 - 1.0;
+            let place = vector();
+            let triangle = (place.x.abs() * scene.mesh.triangles.len() as f64) as usize;
+            let corners = scene.mesh.corners(triangle);
+            let origin = match k % 5 {
+                0 => corners[0] + 8.0 * DVec3::AXES[k % 3],
+                1 => corners[1] + 0.3 * place,
+                2 => scene.mesh.corners((triangle + 7) % scene.mesh.triangles.len())[2],
+                3 => offset + 0.2 * place,
+                _ => offset + 3.5 * place.normalize(),
+            };
+            // Some beside the triangle: others are met there.
+            let spread = [1.0, 1.0, 3.0][k % 3];
+            let rays: Vec<Ray> = (0..64 - k % 7)
+                .map(|ray| {
+                    let (u, v) = (number(), number());
+                    let weights = match ray % 4 {
+                        0 => [DVec3::X, DVec3::Y, DVec3::Z][ray / 4 % 3],
+                        1 => DVec3::new(u, 1.0 - u, 0.0),
+                        _ => DVec3::new(u * v, u * (1.0 - v), 1.0 - u) * spread,
+                    };
+                    let weights = weights / weights.element_sum();
+                    let [a, b, c] = corners;
+                    let target = a * weights.x + b * weights.y + c * weights.z;
+                    Ray::new(origin, (target - origin) * (0.5 + v))
+                })
+                .collect();
+            for range in [Interval::POSITIVE, Interval::up_to(1.0), Interval { min: 0.7, max: 1.5 }]
+            {
+                let wanted: Vec<_> =
+                    rays.iter().map(|ray| oracle.closest_hit(ray, range)).collect();
+                for kernel in kernels() {
+                    let wide = Wide::with_kernel(&scene, kernel);
+                    let mut got = vec![None; rays.len()];
+                    wide.closest_hits(&rays, range, &mut got);
+                    assert_eq!(got, wanted, "{k} {kernel:?} {range:?}");
+                    let answered = match kernel {
+                        #[cfg(target_arch = "x86_64")]
+                        Kernel::Avx2(lanes) => packet(lanes, &wide, &rays, range),
+                        Kernel::Scalar(lanes) => packet(lanes, &wide, &rays, range),
+                    };
+                    let Some(answered) = answered else { continue };
+                    together += 1;
+                    hits += wanted.iter().flatten().count();
+                    assert_eq!(answered, wanted, "{k} {kernel:?} {range:?}, together");
+                }
+            }
+        }
+    }
+    assert!(together > 1000 && hits > 40 * 1000, "{together} {hits}");
+}
+
+/// The answers of a packet, even if it does not pay.
+fn packet<L: Lanes>(
+    lanes: L,
+    wide: &Wide,
+    rays: &[Ray],
+    range: Interval,
+) -> Option<Vec<Option<Hit>>> {
+    let mut packet = Packet::new(lanes, wide, rays, range)?;
+    let mut hits = vec![None; rays.len()];
+    packet.walk().then(|| packet.answer(&mut hits))?;
+    Some(hits)
 }

@@ -28,17 +28,16 @@ pub(super) const U: f32 = 0.5 * f32::EPSILON;
 pub(super) struct WideRay<L: Lanes> {
     lanes: L,
     pub(super) slabs: FourSlabs,
-    /// Which of a node's rows of planes a ray meets first on each axis, and last.
+    /// Which of a node's rows of planes a ray meets first on each axis: 1 for the highest coordinates.
     near: [usize; 3],
-    far: [usize; 3],
-    inverse: Vectors<L>,
-    near_offset: Vectors<L>,
-    far_offset: Vectors<L>,
-    origin: Vectors<L>,
-    direction: Vectors<L>,
+    inverse: [f32; 3],
+    near_offset: [f32; 3],
+    far_offset: [f32; 3],
+    origin: [f32; 3],
+    direction: [f32; 3],
     bounds: Bounds,
     /// A hit must be this far away to be certain.
-    min: f32,
+    pub(super) min: f32,
 }
 
 impl<L: Lanes> WideRay<L> {
@@ -51,17 +50,16 @@ impl<L: Lanes> WideRay<L> {
         let is_far = slabs.moved > 8.0 * f64::EPSILON as f32 * FARTHEST;
         let min = if is_far { f32::INFINITY } else { slabs.parameter(range.min) };
         let negative = slabs.inverse.is_negative_bitmask() as usize;
-        let near = [negative & 1, 2 | negative >> 1 & 1, 4 | negative >> 2 & 1];
+        let near = [negative & 1, negative >> 1 & 1, negative >> 2 & 1];
         Self {
             lanes,
             slabs,
             near,
-            far: near.map(|row| row ^ 1),
-            inverse: splat3(lanes, slabs.inverse.to_array()),
-            near_offset: splat3(lanes, slabs.near_offset.to_array()),
-            far_offset: splat3(lanes, slabs.far_offset.to_array()),
-            origin: splat3(lanes, slabs.origin.to_array()),
-            direction: splat3(lanes, slabs.direction.to_array()),
+            inverse: slabs.inverse.to_array(),
+            near_offset: slabs.near_offset.to_array(),
+            far_offset: slabs.far_offset.to_array(),
+            origin: slabs.origin.to_array(),
+            direction: slabs.direction.to_array(),
             bounds: Bounds::new(reach, length),
             min,
         }
@@ -71,21 +69,23 @@ impl<L: Lanes> WideRay<L> {
     #[inline(always)]
     fn enter(&self, node: &Node, max: f32) -> (L::F, u32) {
         let lanes = self.lanes;
-        let near = self.planes(node, self.near, &self.near_offset);
-        let far = self.planes(node, self.far, &self.far_offset);
+        let near = self.planes(node, 0, &self.near_offset);
+        let far = self.planes(node, 1, &self.far_offset);
         let first = lanes.max(lanes.max(near[0], near[1]), lanes.max(near[2], lanes.splat(0.0)));
         let last = lanes.min(lanes.min(far[0], far[1]), lanes.min(far[2], lanes.splat(max)));
         (first, lanes.at_least(last, first))
     }
 
-    /// Where the ray meets three rows of planes.
+    /// Where the ray meets the planes on its side, or (1) on the other.
     #[inline(always)]
-    fn planes(&self, node: &Node, [x, y, z]: [usize; 3], offset: &Vectors<L>) -> Vectors<L> {
+    fn planes(&self, node: &Node, other: usize, offset: &[f32; 3]) -> Vectors<L> {
         let lanes = self.lanes;
+        let row = |axis: usize| &node.planes[axis][(self.near[axis] ^ other) & 1];
+        let (inverse, offset) = (splat3(lanes, self.inverse), splat3(lanes, *offset));
         [
-            lanes.mul_add(lanes.load(&node.planes[x]), self.inverse[0], offset[0]),
-            lanes.mul_add(lanes.load(&node.planes[y]), self.inverse[1], offset[1]),
-            lanes.mul_add(lanes.load(&node.planes[z]), self.inverse[2], offset[2]),
+            lanes.mul_add(lanes.load(row(0)), inverse[0], offset[0]),
+            lanes.mul_add(lanes.load(row(1)), inverse[1], offset[1]),
+            lanes.mul_add(lanes.load(row(2)), inverse[2], offset[2]),
         ]
     }
 
@@ -95,10 +95,11 @@ impl<L: Lanes> WideRay<L> {
         let l = self.lanes;
         let [ax, ay, az, ex, ey, ez, fx, fy, fz] = l.rows::<9>(&words[1..=9 * count], count);
         let (e, f) = ([ex, ey, ez], [fx, fy, fz]);
-        let c = sub3(l, [ax, ay, az], self.origin);
+        let (origin, direction) = (splat3(l, self.origin), splat3(l, self.direction));
+        let c = sub3(l, [ax, ay, az], origin);
         let n = cross(l, e, f);
-        let r = cross(l, c, self.direction);
-        let (det, t) = (dot(l, n, self.direction), dot(l, n, c));
+        let r = cross(l, c, direction);
+        let (det, t) = (dot(l, n, direction), dot(l, n, c));
         let (u, v) = (dot(l, r, f), l.sub(l.splat(0.0), dot(l, r, e)));
         Filtered::new(l, [u, v, det, t], self.bounds.of(l, words[0]), max, (1 << count) - 1)
     }
@@ -409,7 +410,9 @@ fn visit_leaf<L: Lanes>(wide: &Wide, ray: &WideRay<L>, leaf: Child, candidates: 
     while kept != 0 {
         let lane = kept.trailing_zeros() as usize % WIDTH;
         kept &= kept - 1;
-        candidates.add(PrimitiveId(words[1 + 9 * count + lane].to_bits()), lowest[lane]);
+        let id = words[1 + 9 * count + lane].to_bits();
+        ray.lanes.prefetch(&wide.scene.mesh.triangles[id as usize]);
+        candidates.add(PrimitiveId(id), lowest[lane]);
         if certain >> lane & 1 != 0 {
             candidates.max = candidates.max.min(highest[lane]);
         }
