@@ -2,12 +2,13 @@
 
 use std::sync::atomic::AtomicBool;
 
-use glam::DVec3;
-use lancer_accel::ObvhsBvh2;
+use glam::{DVec2, DVec3};
+use lancer_accel::{ObvhsBvh2, Wide};
 use lancer_core::Rgb;
 use lancer_core::generate::{icosphere, sphere_flake};
 use lancer_core::image::ImageSize;
-use lancer_core::render::{Cancelled, Control, Rendering, render_pixels};
+use lancer_core::intersector::{Intersector, LinearScan};
+use lancer_core::render::{Cancelled, Control, Rendering, Seen, render_pixels};
 use lancer_core::sampling::{Pattern, PixelSampling};
 use lancer_core::scene::{Material, MaterialId, PointLight, Scene};
 use lancer_core::world::World;
@@ -39,11 +40,46 @@ fn render(threads: usize, tile: u32, pattern: Pattern, settings: Settings) -> Re
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let control = Control { tile, ..Control::default() };
     pool.install(|| {
-        render_pixels(size, sampling, control, |film, counts: &mut RayCounts| {
+        render_pixels(size, sampling, control, |film: DVec2, counts: &mut RayCounts| {
             method.trace(&rays.through(film.x, film.y), counts)
         })
     })
     .unwrap()
+}
+
+/// Primary rays that are answered together, and the same one by one and by brute force.
+#[test]
+fn pictures_do_not_depend_on_who_answers() {
+    let mut scene = Scene::of_mesh(icosphere(3));
+    scene.lights.push(PointLight::beside(&scene.camera));
+    let spheres = self::scene();
+    for scene in [&scene, &spheres] {
+        let (wide, linear) = (Wide::build(scene), LinearScan::new(scene));
+        let size = ImageSize::new(61, 47);
+        let rays = scene.camera.primary_rays(size);
+        for samples in [1, 5] {
+            let sampling = PixelSampling { pattern: Pattern::Owen, samples, seed: 9 };
+            let [together, alone] = [&wide as &dyn Intersector, &linear].map(|index| {
+                let world = World { scene, index };
+                let whitted = Whitted::new(world, Settings::default());
+                let seen = Seen::new(world, size, |ray, hit, counts: &mut RayCounts| {
+                    whitted.shade(ray, hit, counts)
+                });
+                let together = render_pixels(size, sampling, Control::default(), seen).unwrap();
+                let alone = render_pixels(
+                    size,
+                    sampling,
+                    Control::default(),
+                    |film: DVec2, counts: &mut _| {
+                        whitted.trace(&rays.through(film.x, film.y), counts)
+                    },
+                );
+                assert_eq!(together, alone.unwrap());
+                together
+            });
+            assert!(together == alone && together.counts.shadow > 100, "{:?}", together.counts);
+        }
+    }
 }
 
 #[test]

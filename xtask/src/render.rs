@@ -4,11 +4,11 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use chapter_4::structures::STRUCTURES;
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use lancer_core::Rgb;
 use lancer_core::image::{ImageSize, check_target, save};
 use lancer_core::intersector::Intersector;
-use lancer_core::render::{Control, Rendering, render_adaptive, render_pixels};
+use lancer_core::render::{Control, Film, Rendering, Seen, render_adaptive, render_pixels};
 use lancer_core::sampling::{Pattern, PixelSampling};
 use lancer_core::scene::load::WarningKind;
 use lancer_core::scene::{PointLight, Scene};
@@ -211,24 +211,26 @@ fn trace(
     args: &Args,
 ) -> Result<Rendering<RayCounts>> {
     let world = World { scene, index };
-    let rays = scene.camera.primary_rays(args.size);
     match method {
         Method::Appel => {
             let appel = Appel::new(world);
-            picture(args, |film, counts| appel.trace(&rays.through(film.x, film.y), counts))
+            picture(
+                args,
+                Seen::new(world, args.size, |ray, hit, counts| appel.shade(ray, hit, counts)),
+            )
         }
         Method::Whitted => {
             let settings = Settings { max_depth: args.depth, ..Settings::default() };
             let whitted = Whitted::new(world, settings);
-            picture(args, |film, counts| whitted.trace(&rays.through(film.x, film.y), counts))
+            picture(
+                args,
+                Seen::new(world, args.size, |ray, hit, counts| whitted.shade(ray, hit, counts)),
+            )
         }
     }
 }
 
-fn picture(
-    args: &Args,
-    radiance: impl Fn(DVec2, &mut RayCounts) -> Rgb + Sync,
-) -> Result<Rendering<RayCounts>> {
+fn picture(args: &Args, film: impl Film<RayCounts>) -> Result<Rendering<RayCounts>> {
     let pattern = if args.spp == 1 { Pattern::Regular } else { Pattern::Owen };
     let sampling = PixelSampling { pattern, samples: args.spp, seed: args.seed };
     let bar = progress::bar(args.size.pixels() as u64, "tracing");
@@ -239,8 +241,8 @@ fn picture(
     };
     let start = Instant::now();
     let rendering = match args.adaptive {
-        Some(contrast) => render_adaptive(args.size, sampling, contrast, control, radiance),
-        None => render_pixels(args.size, sampling, control, radiance),
+        Some(contrast) => render_adaptive(args.size, sampling, contrast, control, film),
+        None => render_pixels(args.size, sampling, control, film),
     };
     let rendering = rendering.map_err(|_| anyhow!("interrupted; no file was written"));
     let seconds = start.elapsed().as_secs_f64();

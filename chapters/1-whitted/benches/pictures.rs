@@ -1,15 +1,15 @@
-//! Whole pictures on one thread: Whitted's scene by both methods and through both indexes, and an index
+//! Whole pictures on one thread: Whitted's scene by both methods and through both indexes, and two indexes
 //! over a mesh. Other meshes: `cargo xtask render`.
 #![allow(missing_docs)]
 
 use chapter_1::scenes;
 use criterion::{Criterion, criterion_group, criterion_main};
-use lancer_accel::ObvhsBvh2;
+use lancer_accel::{ObvhsBvh2, Wide};
 use lancer_core::Rgb;
 use lancer_core::geometry::Ray;
 use lancer_core::image::ImageSize;
-use lancer_core::intersector::{Intersector, LinearScan};
-use lancer_core::render::{Control, render_pixels};
+use lancer_core::intersector::{Hit, Intersector, LinearScan};
+use lancer_core::render::{Control, Seen, render_pixels};
 use lancer_core::sampling::PixelSampling;
 use lancer_core::scene::Scene;
 use lancer_core::world::World;
@@ -17,23 +17,25 @@ use lancer_whitted::{Appel, RayCounts, Settings, Whitted};
 
 const SIZE: ImageSize = ImageSize::new(256, 256);
 
-fn picture(scene: &Scene, trace: impl Fn(&Ray, &mut RayCounts) -> Rgb + Sync) -> RayCounts {
-    let rays = scene.camera.primary_rays(SIZE);
-    let rendering =
-        render_pixels(SIZE, PixelSampling::CENTER, Control::default(), |film, counts| {
-            trace(&rays.through(film.x, film.y), counts)
-        });
+fn picture(
+    world: World,
+    shade: impl Fn(&Ray, Option<Hit>, &mut RayCounts) -> Rgb + Sync,
+) -> RayCounts {
+    let seen = Seen::new(world, SIZE, shade);
+    let rendering = render_pixels(SIZE, PixelSampling::CENTER, Control::default(), seen);
     rendering.expect("nobody cancels a bench").counts
 }
 
 fn appel(scene: &Scene, index: &dyn Intersector) -> RayCounts {
-    let method = Appel::new(World { scene, index });
-    picture(scene, |ray, counts| method.trace(ray, counts))
+    let world = World { scene, index };
+    let method = Appel::new(world);
+    picture(world, |ray, hit, counts| method.shade(ray, hit, counts))
 }
 
 fn whitted(scene: &Scene, index: &dyn Intersector) -> RayCounts {
-    let method = Whitted::new(World { scene, index }, Settings::default());
-    picture(scene, |ray, counts| method.trace(ray, counts))
+    let world = World { scene, index };
+    let method = Whitted::new(world, Settings::default());
+    picture(world, |ray, hit, counts| method.shade(ray, hit, counts))
 }
 
 fn pictures(criterion: &mut Criterion) {
@@ -53,14 +55,17 @@ fn pictures(criterion: &mut Criterion) {
     group.finish();
 
     let gears = scenes::open("gears", Some("4")).expect("a scene of the chapter").scene;
-    let tree = ObvhsBvh2::build(&gears);
+    let (tree, wide) = (ObvhsBvh2::build(&gears), Wide::build(&gears));
     let mut group = criterion.benchmark_group("gears:4");
     group.sample_size(20);
     group.bench_function("build obvhs-bvh2", |b| {
         b.iter(|| ObvhsBvh2::build(&gears).memory());
     });
-    group.bench_function("appel 256x256", |b| {
+    group.bench_function("appel 256x256, obvhs-bvh2", |b| {
         b.iter(|| pool.install(|| appel(&gears, &tree)));
+    });
+    group.bench_function("appel 256x256, wide", |b| {
+        b.iter(|| pool.install(|| appel(&gears, &wide)));
     });
     group.finish();
 }

@@ -8,8 +8,12 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::Rgb;
+use crate::geometry::{Interval, Ray};
 use crate::image::{Image, ImageSize};
+use crate::intersector::Hit;
 use crate::sampling::PixelSampling;
+use crate::scene::PrimaryRays;
+use crate::world::World;
 
 /// How a rendering is run; none of it changes the picture.
 #[derive(Clone, Copy)]
@@ -65,16 +69,124 @@ impl Tile {
         self.pixels[index] = radiance.to_array().map(narrow);
     }
 
-    /// Sets every pixel by its column and row in the picture; stops early when cancelled, since a pixel
-    /// of many samples may take long.
-    fn fill(&mut self, control: Control, mut pixel: impl FnMut(u32, u32) -> Rgb) {
-        for y in self.y..self.y + self.size.height {
-            for x in self.x..self.x + self.size.width {
-                if control.cancelled.load(Ordering::Relaxed) {
-                    return;
-                }
-                self.set(x, y, pixel(x, y));
+    /// Column and row in the picture of one of its pixels, counted row by row.
+    fn place(&self, pixel: usize) -> (u32, u32) {
+        let (pixel, width) = (pixel as u32, self.size.width);
+        (self.x + pixel % width, self.y + pixel / width)
+    }
+
+    /// Sets the wanted pixels; stops early when cancelled, since a pixel of many samples may take long.
+    fn fill<C>(
+        &mut self,
+        sampling: PixelSampling,
+        control: Control,
+        wanted: impl Fn(u32, u32) -> bool,
+        film: &impl Film<C>,
+        counts: &mut C,
+    ) {
+        let mut sums = vec![Rgb::ZERO; self.pixels.len()];
+        let (mut points, mut owners) = (Vec::with_capacity(BATCH), Vec::with_capacity(BATCH));
+        let mut answers = vec![Rgb::ZERO; BATCH];
+        let mut flush = |points: &mut Vec<DVec2>, owners: &mut Vec<usize>| {
+            let answers = &mut answers[..points.len()];
+            film.radiance(points, answers, counts);
+            for (owner, answer) in owners.drain(..).zip(answers) {
+                sums[owner] += *answer;
             }
+            points.clear();
+        };
+        for (column, row) in neighbours_together(self.size) {
+            let (x, y) = (self.x + column, self.y + row);
+            if !wanted(x, y) {
+                continue;
+            }
+            for point in sampling.points(x, y) {
+                points.push(point);
+                owners.push((row * self.size.width + column) as usize);
+                if points.len() == BATCH {
+                    if control.cancelled.load(Ordering::Relaxed) {
+                        return;
+                    }
+                    flush(&mut points, &mut owners);
+                }
+            }
+        }
+        flush(&mut points, &mut owners);
+        for (owner, sum) in sums.into_iter().enumerate() {
+            let (x, y) = self.place(owner);
+            if wanted(x, y) {
+                self.set(x, y, sum / f64::from(sampling.samples));
+            }
+        }
+    }
+}
+
+/// Samples that are answered at once, at most.
+const BATCH: usize = 256;
+
+/// Columns and rows of a rectangle along Morton's curve: any 64 in a row are close to each other.
+fn neighbours_together(size: ImageSize) -> impl Iterator<Item = (u32, u32)> {
+    let side = u64::from(size.width.max(size.height).next_power_of_two());
+    let places = (0..side * side).map(|code| (every_second_bit(code), every_second_bit(code >> 1)));
+    places.filter(move |&(x, y)| x < size.width && y < size.height)
+}
+
+/// Bits 0, 2, 4, … of a number, moved together.
+fn every_second_bit(code: u64) -> u32 {
+    let mut bits = code & 0x5555_5555_5555_5555;
+    for (shift, mask) in [
+        (1, 0x3333_3333_3333_3333),
+        (2, 0x0f0f_0f0f_0f0f_0f0f),
+        (4, 0x00ff_00ff_00ff_00ff),
+        (8, 0x0000_ffff_0000_ffff),
+        (16, 0xffff_ffff),
+    ] {
+        bits = (bits | bits >> shift) & mask;
+    }
+    bits as u32
+}
+
+/// What arrives at points of the film. A function of one point, in pixels, and the counts is one;
+/// [`Seen`] is another.
+pub trait Film<C>: Sync {
+    /// The radiance at each point, into the slice of the same length.
+    fn radiance(&self, points: &[DVec2], radiance: &mut [Rgb], counts: &mut C);
+}
+
+impl<C, F: Fn(DVec2, &mut C) -> Rgb + Sync> Film<C> for F {
+    fn radiance(&self, points: &[DVec2], radiance: &mut [Rgb], counts: &mut C) {
+        for (point, radiance) in points.iter().zip(radiance) {
+            *radiance = self(*point, counts);
+        }
+    }
+}
+
+/// What the scene's camera sees: primary rays are answered together, which is faster with some indexes;
+/// `shade` tells what comes back along each.
+pub struct Seen<'a, F> {
+    world: World<'a>,
+    rays: PrimaryRays,
+    shade: F,
+}
+
+impl<'a, F> Seen<'a, F> {
+    /// For pictures of one size.
+    pub fn new<C>(world: World<'a>, size: ImageSize, shade: F) -> Self
+    where
+        F: Fn(&Ray, Option<Hit>, &mut C) -> Rgb,
+    {
+        Self { world, rays: world.scene.camera.primary_rays(size), shade }
+    }
+}
+
+impl<C, F: Fn(&Ray, Option<Hit>, &mut C) -> Rgb + Sync> Film<C> for Seen<'_, F> {
+    fn radiance(&self, points: &[DVec2], radiance: &mut [Rgb], counts: &mut C) {
+        let rays: Vec<Ray> =
+            points.iter().map(|point| self.rays.through(point.x, point.y)).collect();
+        let mut hits = vec![None; rays.len()];
+        self.world.index.closest_hits(&rays, Interval::POSITIVE, &mut hits);
+        for ((ray, hit), radiance) in rays.iter().zip(hits).zip(radiance) {
+            *radiance = (self.shade)(ray, hit, counts);
         }
     }
 }
@@ -129,8 +241,7 @@ pub fn render_tiles<C: AddAssign + Default + Send>(
     Ok(rendering)
 }
 
-/// Renders pixel by pixel: `radiance` answers for one film point, in pixels, and a pixel is the mean
-/// of its samples, summed in `f64` in their order.
+/// Renders pixel by pixel: a pixel is the mean of its samples, summed in `f64` in their order.
 ///
 /// # Errors
 /// As [`render_tiles`].
@@ -138,10 +249,10 @@ pub fn render_pixels<C: AddAssign + Default + Send>(
     size: ImageSize,
     sampling: PixelSampling,
     control: Control,
-    radiance: impl Fn(DVec2, &mut C) -> Rgb + Sync,
+    film: impl Film<C>,
 ) -> Result<Rendering<C>, Cancelled> {
     render_tiles(size, control, |tile, counts| {
-        tile.fill(control, |x, y| mean(sampling, x, y, |film| radiance(film, counts)));
+        tile.fill(sampling, control, |_, _| true, &film, counts);
     })
 }
 
@@ -160,18 +271,21 @@ pub fn render_adaptive<C: AddAssign + Default + Send>(
     sampling: PixelSampling,
     contrast: f64,
     control: Control,
-    radiance: impl Fn(DVec2, &mut C) -> Rgb + Sync,
+    film: impl Film<C>,
 ) -> Result<Rendering<C>, Cancelled> {
-    let centers = render_pixels(size, PixelSampling::CENTER, control, &radiance)?;
+    let centers = render_tiles(size, control, |tile, counts| {
+        tile.fill(PixelSampling::CENTER, control, |_, _| true, &film, counts);
+    })?;
     let detailed = detailed(&centers.image, contrast);
+    let is_detailed = |x: u32, y: u32| detailed[(y * size.width + x) as usize];
     let mut refined = render_tiles(size, control, |tile, counts| {
-        tile.fill(control, |x, y| {
-            if detailed[(y * size.width + x) as usize] {
-                mean(sampling, x, y, |film| radiance(film, counts))
-            } else {
-                centers.image.get(x, y)
+        tile.fill(sampling, control, is_detailed, &film, counts);
+        for pixel in 0..tile.size.pixels() {
+            let (x, y) = tile.place(pixel);
+            if !is_detailed(x, y) {
+                tile.set(x, y, centers.image.get(x, y));
             }
-        });
+        }
     })?;
     refined.counts += centers.counts;
     Ok(refined)
@@ -195,12 +309,6 @@ fn detailed(image: &Image, contrast: f64) -> Vec<bool> {
         }
     }
     detailed
-}
-
-/// The mean radiance of a pixel's samples, in their order.
-#[inline]
-fn mean(sampling: PixelSampling, x: u32, y: u32, radiance: impl FnMut(DVec2) -> Rgb) -> Rgb {
-    sampling.points(x, y).map(radiance).sum::<Rgb>() / f64::from(sampling.samples)
 }
 
 #[cfg(test)]
@@ -233,6 +341,21 @@ mod tests {
                 assert_eq!(rendering.image.get(4, 3), Rgb::splat(f32::MAX.into()));
             }
             assert_eq!(rendering.image.get(5, 3), Rgb::splat(0.5));
+        }
+    }
+
+    #[test]
+    fn all_pixels_come_once_and_neighbours_together() {
+        for size in [ImageSize::new(16, 16), ImageSize::new(5, 13), ImageSize::new(1, 1)] {
+            let places: Vec<_> = neighbours_together(size).collect();
+            let all: std::collections::HashSet<_> = places.iter().copied().collect();
+            assert_eq!((places.len(), all.len()), (size.pixels(), size.pixels()));
+            assert!(places.iter().all(|&(x, y)| x < size.width && y < size.height));
+        }
+        let places: Vec<_> = neighbours_together(ImageSize::new(16, 16)).collect();
+        for block in places.chunks(64) {
+            let (x, y) = (block[0].0 / 8, block[0].1 / 8);
+            assert!(block.iter().all(|place| (place.0 / 8, place.1 / 8) == (x, y)));
         }
     }
 

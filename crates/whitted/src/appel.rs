@@ -2,9 +2,10 @@ use glam::DVec3;
 use lancer_core::Rgb;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::illumination::{Reflectance, ambient, attenuation, local};
+use lancer_core::intersector::Hit;
 use lancer_core::world::{PointSource, SurfacePoint, World};
 
-use crate::recorder::{Call, RayKind, Recorder};
+use crate::recorder::{Call, Recorder};
 
 /// A world and its lights as points: what both methods of the chapter need at a surface.
 #[derive(Clone)]
@@ -94,9 +95,16 @@ impl<'a> Appel<'a> {
     /// The radiance that comes back along a primary ray of unit direction.
     #[inline]
     pub fn trace<R: Recorder>(&self, ray: &Ray, recorder: &mut R) -> Rgb {
-        let World { scene, index } = self.lighting.world;
-        recorder.enter(&Call { ray: *ray, depth: 0, weight: 1.0, kind: RayKind::Primary });
-        let radiance = match index.closest_hit(ray, Interval::POSITIVE) {
+        let hit = self.lighting.world.index.closest_hit(ray, Interval::POSITIVE);
+        self.shade(ray, hit, recorder)
+    }
+
+    /// The same if what the ray hits first is known.
+    #[inline]
+    pub fn shade<R: Recorder>(&self, ray: &Ray, hit: Option<Hit>, recorder: &mut R) -> Rgb {
+        let scene = self.lighting.world.scene;
+        recorder.enter(&Call::primary(ray));
+        let radiance = match hit {
             None => scene.background,
             Some(hit) => {
                 let surface = scene.surface_at(ray, &hit);

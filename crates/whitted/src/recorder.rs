@@ -31,6 +31,13 @@ pub struct Call {
     pub kind: RayKind,
 }
 
+impl Call {
+    /// For a ray from the eye.
+    pub fn primary(ray: &Ray) -> Self {
+        Self { ray: *ray, depth: 0, weight: 1.0, kind: RayKind::Primary }
+    }
+}
+
 /// Follows the recursion. The methods do nothing unless they are overridden, so that following costs
 /// nothing when nobody does.
 pub trait Recorder {

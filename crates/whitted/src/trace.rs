@@ -1,5 +1,6 @@
 use lancer_core::Rgb;
 use lancer_core::geometry::{Interval, Ray};
+use lancer_core::intersector::Hit;
 use lancer_core::optics::{reflect, refract};
 use lancer_core::sampling::Uniform;
 use lancer_core::world::{SurfacePoint, World};
@@ -92,25 +93,48 @@ impl<'a> Whitted<'a> {
     #[doc(alias = "LR")]
     #[inline]
     pub fn trace<R: Recorder>(&self, ray: &Ray, recorder: &mut R) -> Rgb {
-        self.lr(Call { ray: *ray, depth: 0, weight: 1.0, kind: RayKind::Primary }, recorder)
+        self.lr(Call::primary(ray), recorder)
+    }
+
+    /// The same if what the ray hits first is known.
+    #[inline]
+    pub fn shade<R: Recorder>(&self, ray: &Ray, hit: Option<Hit>, recorder: &mut R) -> Rgb {
+        self.lr_meeting(Call::primary(ray), recorder, |_| hit)
     }
 
     fn lr<R: Recorder>(&self, call: Call, recorder: &mut R) -> Rgb {
+        let index = self.lighting.world.index;
+        self.lr_meeting(call, recorder, |ray| index.closest_hit(ray, Interval::POSITIVE))
+    }
+
+    /// LR, where `meets` tells what a ray hits first.
+    #[inline]
+    fn lr_meeting<R: Recorder>(
+        &self,
+        call: Call,
+        recorder: &mut R,
+        meets: impl Fn(&Ray) -> Option<Hit>,
+    ) -> Rgb {
         let radiance =
             if call.depth > self.settings.max_depth || call.weight < self.settings.min_weight {
-                self.at_limit(call, recorder)
+                self.at_limit(call, recorder, meets)
             } else {
-                self.follow(&call, recorder)
+                self.follow(&call, recorder, meets)
             };
         recorder.leave(radiance);
         radiance
     }
 
     #[inline]
-    fn follow<R: Recorder>(&self, call: &Call, recorder: &mut R) -> Rgb {
-        let World { scene, index } = self.lighting.world;
+    fn follow<R: Recorder>(
+        &self,
+        call: &Call,
+        recorder: &mut R,
+        meets: impl Fn(&Ray) -> Option<Hit>,
+    ) -> Rgb {
+        let scene = self.lighting.world.scene;
         recorder.enter(call);
-        match index.closest_hit(&call.ray, Interval::POSITIVE) {
+        match meets(&call.ray) {
             Some(hit) => {
                 let surface = scene.surface_at(&call.ray, &hit);
                 recorder.hit(&hit, &surface);
@@ -158,7 +182,12 @@ impl<'a> Whitted<'a> {
         recursion(local, k_s, reflected, k_t, refracted)
     }
 
-    fn at_limit<R: Recorder>(&self, call: Call, recorder: &mut R) -> Rgb {
+    fn at_limit<R: Recorder>(
+        &self,
+        call: Call,
+        recorder: &mut R,
+        meets: impl Fn(&Ray) -> Option<Hit>,
+    ) -> Rgb {
         let Settings { max_depth, min_weight, at_limit } = self.settings;
         if let AtLimit::Roulette { seed } = at_limit
             && call.depth <= max_depth
@@ -168,7 +197,7 @@ impl<'a> Whitted<'a> {
             let turn = seed ^ u64::from(call.depth) << 32;
             if Uniform::of_ray(turn, &call.ray).number() < survival {
                 let survivor = Call { weight: min_weight, ..call };
-                return self.follow(&survivor, recorder) / survival;
+                return self.follow(&survivor, recorder, meets) / survival;
             }
         }
         recorder.cut(&call);

@@ -4,6 +4,7 @@ use glam::DVec2;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::intersector::{Hit, Probe};
 use lancer_core::scene::PrimitiveId;
+use smallvec::SmallVec;
 
 use super::collapse::WIDTH;
 use super::lanes::{Lanes, Vectors, cross, dot, splat3, sub3};
@@ -88,7 +89,7 @@ pub(super) struct Packet<'p, 's, L: Lanes> {
     lowest: [[f32; WIDTH]; VECTORS],
     best: [[u32; WIDTH]; VECTORS],
     /// Ray and primitive of what might be closer, or not.
-    doubts: Stack<DOUBTS>,
+    doubts: SmallVec<[u64; DOUBTS]>,
 }
 
 /// One side of the packet: a box is beside it if ±x + `factor` · z + `offset` > 0, x being the box's lowest
@@ -153,17 +154,16 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
         let reach = 1.0 + origin.abs().max_element() as f32;
         let pad = f64::from(16.0 * U * reach);
         let mut spreads = [[[f32::NAN; WIDTH]; 2]; 2];
-        for (k, rays) in rays.chunks(WIDTH).enumerate() {
-            let (mut low, mut high) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
-            for axis in 0..2 {
-                for slope in &slopes[axis][k][..rays.len()] {
-                    (low[axis], high[axis]) = (low[axis].min(*slope), high[axis].max(*slope));
-                }
-            }
-            let spread = Spread::between(low, high);
-            for axis in 0..2 {
-                spreads[0][axis][k] = spread.middle[axis];
-                spreads[1][axis][k] = spread.half[axis];
+        for k in 0..rays.len().div_ceil(WIDTH) {
+            let count = (rays.len() - k * WIDTH).min(WIDTH);
+            let ends = [0, 1].map(|axis: usize| {
+                let slopes = &slopes[axis][k][..count];
+                let low = slopes.iter().copied().fold(f32::INFINITY, f32::min);
+                (low, slopes.iter().copied().fold(f32::NEG_INFINITY, f32::max))
+            });
+            let Spread { middle, half } = Spread::between(ends.map(|e| e.0), ends.map(|e| e.1));
+            for (of_axis, spread) in spreads.iter_mut().zip([middle, half]) {
+                (of_axis[0][k], of_axis[1][k]) = (spread[0], spread[1]);
             }
         }
         let mut sides = [Side { turned: false, factor: 0.0, offset: 0.0 }; 4];
@@ -204,7 +204,7 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
             farthest: max.iter().flatten().fold(0.0, |most, &max| most.max(max)),
             lowest: [[f32::INFINITY; WIDTH]; VECTORS],
             best: [[NONE; WIDTH]; VECTORS],
-            doubts: Stack::new(),
+            doubts: SmallVec::new(),
         })
     }
 
@@ -324,7 +324,7 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
             while vectors != 0 {
                 let vector = vectors.trailing_zeros() as usize % VECTORS;
                 vectors &= vectors - 1;
-                if self.doubts.lacks_room_for(WIDTH) {
+                if self.doubts.len() + WIDTH > DOUBTS {
                     return false;
                 }
                 found |= self.test(&triangle, vector);
@@ -403,7 +403,8 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
     /// Lets `f64` decide on what is left.
     #[inline(always)]
     pub(super) fn answer(&mut self, hits: &mut [Option<Hit>]) {
-        let mut doubts = self.doubts.sorted().iter().peekable();
+        self.doubts.sort_unstable();
+        let mut doubts = self.doubts.iter().peekable();
         for (k, (ray, hit)) in self.rays.iter().zip(hits).enumerate() {
             let mut probe = Probe::new(self.wide.scene, ray, self.range);
             let best = self.best[k / WIDTH][k % WIDTH];

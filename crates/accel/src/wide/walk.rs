@@ -216,22 +216,6 @@ impl<const N: usize> Stack<N> {
         Some(unsafe { self.entries[self.length].assume_init() })
     }
 
-    /// Whether there may be no room for `more`.
-    #[inline(always)]
-    pub(super) fn lacks_room_for(&self, more: usize) -> bool {
-        self.length + more > N
-    }
-
-    /// All entries, in rising order.
-    #[inline(always)]
-    #[allow(unsafe_code)]
-    pub(super) fn sorted(&mut self) -> &[u64] {
-        // SAFETY: entries below the length have been pushed.
-        let entries = unsafe { self.entries[..self.length].assume_init_mut() };
-        entries.sort_unstable();
-        entries
-    }
-
     /// Pushes the lanes of a mask with at least two bits, far ones first, but for the nearest.
     #[inline(always)]
     pub(super) fn push_but_nearest(
