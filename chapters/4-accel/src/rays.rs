@@ -3,6 +3,7 @@
 use lancer_core::geometry::{Interval, Ray, leave_surface};
 use lancer_core::image::ImageSize;
 use lancer_core::intersector::{Hit, Intersector, Observable, TestCounts};
+use lancer_core::render::neighbours_together;
 use lancer_core::sampling::Uniform;
 use lancer_core::scene::{PointLight, Scene};
 
@@ -18,7 +19,7 @@ pub struct Query {
 /// Where rays come from, which says how alike neighbours are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// From the eye through the pixels' centres, row by row: neighbours are alike.
+    /// From the eye through the pixels' centres, in the order of rendering: neighbours are alike.
     Primary,
     /// From what those meet to a lamp beside the camera: they end in one point. Any hit will do.
     Shadow,
@@ -60,24 +61,22 @@ impl Rays {
         let camera = scene.camera.primary_rays(size);
         let [mut primary, mut shadow, mut diffuse] =
             Kind::ALL.map(|kind| Self { kind, queries: Vec::new() });
-        for y in 0..size.height {
-            for x in 0..size.width {
-                let ray = camera.through(f64::from(x) + 0.5, f64::from(y) + 0.5);
-                primary.queries.push(Query { ray, range: Interval::POSITIVE });
-                let Some(hit) = index.closest_hit(&ray, Interval::POSITIVE) else { continue };
-                let point = scene.surface_at(&ray, &hit);
-                let facing = -point.geometric_normal.dot(ray.direction).signum();
-                let normal = facing * point.geometric_normal;
-                let leave = |d| leave_surface(point.position, point.error, normal, d);
-                let origin = leave(light - point.position);
-                if normal.dot(light - origin) > 0.0 {
-                    let ray = Ray::new(origin, light - origin);
-                    shadow.queries.push(Query { ray, range: Interval::up_to(1.0) });
-                }
-                let direction = normal + Uniform::new(1, x, y).direction();
-                let ray = Ray::new(leave(direction), direction);
-                diffuse.queries.push(Query { ray, range: Interval::POSITIVE });
+        for (x, y) in neighbours_together(size) {
+            let ray = camera.through(f64::from(x) + 0.5, f64::from(y) + 0.5);
+            primary.queries.push(Query { ray, range: Interval::POSITIVE });
+            let Some(hit) = index.closest_hit(&ray, Interval::POSITIVE) else { continue };
+            let point = scene.surface_at(&ray, &hit);
+            let facing = -point.geometric_normal.dot(ray.direction).signum();
+            let normal = facing * point.geometric_normal;
+            let leave = |d| leave_surface(point.position, point.error, normal, d);
+            let origin = leave(light - point.position);
+            if normal.dot(light - origin) > 0.0 {
+                let ray = Ray::new(origin, light - origin);
+                shadow.queries.push(Query { ray, range: Interval::up_to(1.0) });
             }
+            let direction = normal + Uniform::new(1, x, y).direction();
+            let ray = Ray::new(leave(direction), direction);
+            diffuse.queries.push(Query { ray, range: Interval::POSITIVE });
         }
         [primary, shadow, diffuse]
     }

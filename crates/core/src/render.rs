@@ -124,8 +124,9 @@ impl Tile {
 /// Samples that are answered at once, at most.
 const BATCH: usize = 256;
 
-/// Columns and rows of a rectangle along Morton's curve: any 64 in a row are close to each other.
-fn neighbours_together(size: ImageSize) -> impl Iterator<Item = (u32, u32)> {
+/// Columns and rows of a rectangle along Morton's curve, the order in which a tile is rendered: 64 in a row
+/// are a square of 8 × 8, or close to each other.
+pub fn neighbours_together(size: ImageSize) -> impl Iterator<Item = (u32, u32)> {
     let side = u64::from(size.width.max(size.height).next_power_of_two());
     let places = (0..side * side).map(|code| (every_second_bit(code), every_second_bit(code >> 1)));
     places.filter(move |&(x, y)| x < size.width && y < size.height)

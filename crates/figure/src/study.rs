@@ -38,6 +38,29 @@ pub struct Study {
     trials: Vec<Trial>,
 }
 
+/// Runs all `runs` times in turn (A B C A B C), so that a machine that slows down slows all of them. Returns
+/// the seconds of each and what it returned last.
+///
+/// # Panics
+/// If `runs` is 0.
+pub fn time_in_turn<F: Fn() -> T, T>(
+    runs: usize,
+    all: impl IntoIterator<Item = F>,
+) -> Vec<(Spread, T)> {
+    let all: Vec<F> = all.into_iter().collect();
+    let mut seconds = vec![Vec::new(); all.len()];
+    let mut outcomes = Vec::new();
+    for _ in 0..runs {
+        outcomes.clear();
+        for (run, seconds) in all.iter().zip(&mut seconds) {
+            let start = Instant::now();
+            outcomes.push(run());
+            seconds.push(start.elapsed().as_secs_f64());
+        }
+    }
+    seconds.iter().map(|seconds| Spread::of_runs(seconds)).zip(outcomes).collect()
+}
+
 impl Study {
     /// Measures: runs all contenders `runs` times in turn (A B C A B C), so that a machine that slows
     /// down slows all of them, and judges each outcome by named errors, at least 0, against the
@@ -54,28 +77,18 @@ impl Study {
         contenders: Vec<Contender<'_, T>>,
         judge: impl Fn(&T) -> Vec<(&'static str, f64)>,
     ) -> (Self, Vec<T>) {
-        let mut seconds = vec![Vec::new(); contenders.len()];
-        let mut outcomes = Vec::new();
-        for _ in 0..runs {
-            outcomes.clear();
-            for (contender, seconds) in contenders.iter().zip(&mut seconds) {
-                let start = Instant::now();
-                outcomes.push((contender.run)());
-                seconds.push(start.elapsed().as_secs_f64());
-            }
-        }
-        let trials = contenders.into_iter().zip(&outcomes).zip(&seconds).map(
-            |((contender, (outcome, work)), seconds)| Trial {
-                label: contender.label,
+        let timed = time_in_turn(runs, contenders.iter().map(|contender| &*contender.run));
+        let trials =
+            contenders.iter().zip(&timed).map(|(contender, (seconds, (outcome, work)))| Trial {
+                label: contender.label.clone(),
                 color: contender.color,
-                knob: contender.knob,
-                seconds: Spread::of_runs(seconds),
+                knob: contender.knob.clone(),
+                seconds: *seconds,
                 work: *work,
                 errors: judge(outcome),
-            },
-        );
+            });
         let study = Self { work_unit: work_unit.into(), trials: trials.collect() };
-        (study, outcomes.into_iter().map(|(outcome, _)| outcome).collect())
+        (study, timed.into_iter().map(|(_, (outcome, _))| outcome).collect())
     }
 
     fn trial(&self, label: &str, knob: &str) -> &Trial {

@@ -9,13 +9,14 @@ use lancer_core::intersector::{Hit, Intersector, LinearScan};
 use lancer_core::sampling::Uniform;
 use lancer_core::scene::{Mesh, Scene};
 use lancer_figure::{
-    BarChart, Contender, Effort, Finished, Plate, Row, Study, Table, Value, category_color,
-    method_color,
+    BarChart, Effort, Finished, Plate, Row, Table, Value, category_color, method_color,
+    time_in_turn,
 };
 
+use super::is_off;
 use crate::aimed::{CLASSES, aimed};
 use crate::naive::{BareTree, LibraryWalk, first_hit_wins};
-use crate::rays::{Kind, Rays};
+use crate::rays::{Kind, Query, Rays};
 use crate::scenes::family;
 use crate::structures::{STRUCTURES, structure};
 
@@ -34,15 +35,6 @@ struct Case {
 fn differs(answer: Option<Hit>, truth: Option<Hit>) -> bool {
     answer.map(|hit| (hit.t.to_bits(), hit.primitive))
         != truth.map(|hit| (hit.t.to_bits(), hit.primitive))
-}
-
-/// Of one that decides in `f32`: nothing where there is something, something where there is nothing, or a
-/// parameter off by a thousandth.
-fn is_off(t: Option<f32>, truth: Option<Hit>) -> bool {
-    match (t, truth) {
-        (Some(t), Some(hit)) => (f64::from(t) / hit.t - 1.0).abs() > 1e-3,
-        (t, truth) => t.is_some() || truth.is_some(),
-    }
 }
 
 pub fn make(effort: Effort) -> Finished {
@@ -182,31 +174,19 @@ fn speed(effort: Effort) -> (BarChart, String) {
         })
         .count();
     let all = || rays.iter().flat_map(|rays| &rays.queries);
-    let mut contenders = vec![Contender {
-        label: NAIVE[2].to_owned(),
-        color: color(2),
-        knob: String::new(),
-        run: Box::new(|| {
-            (all().filter(|query| library.closest_hit(&query.ray).is_some()).count(), asked as u64)
-        }),
-    }];
-    for (name, built) in names.into_iter().zip(&built) {
-        contenders.push(Contender {
-            label: name.to_owned(),
-            color: method_color(name),
-            knob: String::new(),
-            run: Box::new(|| {
-                let hits = all().filter(|query| {
-                    built.index.closest_hit(&query.ray, Interval::POSITIVE).is_some()
-                });
-                (hits.count(), asked as u64)
-            }),
-        });
+    let mut contenders: Vec<Box<dyn Fn() -> usize + '_>> =
+        vec![Box::new(|| all().filter(|query| library.closest_hit(&query.ray).is_some()).count())];
+    for built in &built {
+        contenders.push(Box::new(|| {
+            let hit =
+                |query: &&Query| built.index.closest_hit(&query.ray, Interval::POSITIVE).is_some();
+            all().filter(hit).count()
+        }));
     }
-    let (study, _) = Study::measure("rays", runs, contenders, |_| Vec::new());
+    let timed = time_in_turn(runs, contenders);
     let labels = [NAIVE[2], names[0], names[1], names[2]];
-    let nanoseconds =
-        labels.map(|label| (1e9 * study.seconds(label, "").mid / asked as f64).round());
+    let nanoseconds: Vec<f64> =
+        timed.iter().map(|(seconds, _)| (1e9 * seconds.mid / asked as f64).round()).collect();
     let sentence = format!(
         "closest hits of primary, shadow and diffuse rays of a scan of {} triangles, one thread, medians of {runs}. Of \
          the {} primary rays the walk in 32 bits gets {off} wrong, the others none",

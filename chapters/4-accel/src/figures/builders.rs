@@ -4,8 +4,8 @@ use lancer_accel::{Bvh, ObvhsBvh2, Split};
 use lancer_core::image::ImageSize;
 use lancer_core::scene::Scene;
 use lancer_figure::{
-    Axis, BarChart, Chart, Color, Contender, Effort, Finished, Plate, Row, Series, Study, Table,
-    category_color, method_color, number,
+    Axis, BarChart, Chart, Color, Effort, Finished, Plate, Row, Series, Table, category_color,
+    method_color, number, time_in_turn,
 };
 
 use crate::rays::Rays;
@@ -144,27 +144,14 @@ fn cases_of(family: &'static str, scene: &Scene, size: ImageSize, runs: usize) -
     let built = BUILDERS.map(|(_, build)| build(scene));
     let rays = Rays::of(scene, size, &*built[0].index);
     let asked: usize = rays.iter().map(|rays| rays.queries.len()).sum();
-    let contenders = BUILDERS.iter().zip(&built).flat_map(|((name, build), built)| {
-        let contender = |part: &str, run: Box<dyn Fn() -> (usize, u64)>| Contender {
-            label: format!("{name} {part}"),
-            color: category_color(0),
-            knob: String::new(),
-            run,
-        };
-        let rays = &rays;
-        [
-            contender("build", Box::new(move || (build(scene).bytes, 0))),
-            contender(
-                "trace",
-                Box::new(move || {
-                    (rays.iter().map(|rays| rays.trace(&*built.index)).sum(), asked as u64)
-                }),
-            ),
-        ]
+    let builds = BUILDERS
+        .iter()
+        .map(|(_, build)| -> Box<dyn Fn() -> usize + '_> { Box::new(|| build(scene).bytes) });
+    let traces = built.iter().map(|built| -> Box<dyn Fn() -> usize + '_> {
+        Box::new(|| rays.iter().map(|rays| rays.trace(&*built.index)).sum())
     });
-    let (study, outcomes) = Study::measure("rays", runs, contenders.collect(), |_| Vec::new());
+    let timed = time_in_turn(runs, builds.chain(traces));
     [0, 1, 2].map(|k| {
-        let name = BUILDERS[k].0;
         let tests = rays.iter().map(|rays| {
             let (_, work) = rays.watch(&*built[k].index);
             work.boxes + work.primitives
@@ -173,9 +160,9 @@ fn cases_of(family: &'static str, scene: &Scene, size: ImageSize, runs: usize) -
             family,
             triangles: scene.mesh.triangles.len(),
             tests_per_ray: tests.sum::<u64>() as f64 / asked as f64,
-            hits: outcomes[2 * k + 1],
-            build_seconds: study.seconds(&format!("{name} build"), "").mid,
-            ray_seconds: study.seconds(&format!("{name} trace"), "").mid / asked as f64,
+            hits: timed[3 + k].1,
+            build_seconds: timed[k].0.mid,
+            ray_seconds: timed[3 + k].0.mid / asked as f64,
             bytes: built[k].bytes,
         }
     })

@@ -3,7 +3,9 @@
 mod agreement;
 mod beams;
 mod builders;
+mod coherence;
 mod grid;
+mod hardware;
 mod heat;
 mod irregular;
 mod nothing;
@@ -32,9 +34,20 @@ pub const FIGURES: &[Figure] = &[
     Figure { id: "4.6", name: "irregular", make: irregular::make },
     Figure { id: "4.7", name: "structures", make: structures::make },
     Figure { id: "4.8", name: "heat", make: heat::make },
+    Figure { id: "4.9", name: "coherence", make: coherence::make },
+    Figure { id: "4.10", name: "hardware", make: hardware::make },
     Figure { id: "4.11", name: "agreement", make: agreement::make },
     Figure { id: "4.12", name: "beams", make: beams::make },
 ];
+
+/// A wrong answer of what decides in `f32`: nothing where there is something, something where there is nothing, or a
+/// parameter off by a thousandth.
+fn is_off(t: Option<f32>, truth: Option<Hit>) -> bool {
+    match (t, truth) {
+        (Some(t), Some(hit)) => (f64::from(t) / hit.t - 1.0).abs() > 1e-3,
+        (t, truth) => t.is_some() || truth.is_some(),
+    }
+}
 
 /// A scene without light, the lighter the more it faces the eye.
 fn shaded(scene: &Scene, camera: Camera, size: ImageSize) -> Picture {

@@ -5,8 +5,7 @@ use lancer_accel::Bvh;
 use lancer_core::image::ImageSize;
 use lancer_core::intersector::{LinearScan, Observable};
 use lancer_figure::{
-    Axis, Chart, Contender, Effort, Finished, Plate, Row, Series, Study, Table, method_color,
-    number,
+    Axis, Chart, Effort, Finished, Plate, Row, Series, Table, method_color, number, time_in_turn,
 };
 
 use crate::rays::{Kind, Rays};
@@ -119,13 +118,7 @@ fn cases_of(family_name: &'static str, count: u32, size: ImageSize, runs: usize)
     let rays = Rays::of(&scene, size, &tree).into_iter().find(|rays| rays.kind == Kind::Primary);
     let rays = rays.expect("all kinds");
     let asked = rays.queries.len() as f64;
-    let contenders = INDEXES.into_iter().zip(indexes).map(|(name, index)| Contender {
-        label: name.to_owned(),
-        color: method_color(name),
-        knob: String::new(),
-        run: Box::new(|| (rays.trace(index), rays.queries.len() as u64)),
-    });
-    let (study, hits) = Study::measure("rays", runs, contenders.collect(), |_| Vec::new());
+    let timed = time_in_turn(runs, indexes.iter().map(|index| || rays.trace(*index)));
     [0, 1].map(|k| {
         let (_, work) = rays.watch(indexes[k]);
         Case {
@@ -133,8 +126,8 @@ fn cases_of(family_name: &'static str, count: u32, size: ImageSize, runs: usize)
             index: INDEXES[k],
             triangles: scene.mesh.triangles.len(),
             tests_per_ray: (work.boxes + work.primitives) as f64 / asked,
-            hits: hits[k],
-            nanoseconds: 1e9 * study.seconds(INDEXES[k], "").mid / asked,
+            hits: timed[k].1,
+            nanoseconds: 1e9 * timed[k].0.mid / asked,
         }
     })
 }

@@ -2,10 +2,10 @@
 
 use chapter_1::figures::fitted_exponent;
 use lancer_core::image::ImageSize;
-use lancer_core::intersector::TestCounts;
+use lancer_core::intersector::{Intersector, TestCounts};
 use lancer_figure::{
-    Axis, BarChart, Chart, Contender, Effort, Finished, Plate, Row, Series, Study, Table,
-    method_color, power_of_ten,
+    Axis, BarChart, Chart, Effort, Finished, Plate, Row, Series, Table, method_color, power_of_ten,
+    time_in_turn,
 };
 
 use crate::rays::{Kind, Rays};
@@ -71,30 +71,20 @@ fn measure(family: Family, count: u32, size: ImageSize, runs: usize) -> Vec<Case
     let scene = family.scene(count);
     let structures: Vec<Structure> =
         STRUCTURES.into_iter().filter(|structure| takes(structure, count)).collect();
-    let contenders = structures.iter().map(|structure| Contender {
-        label: structure.name.to_owned(),
-        color: method_color(structure.name),
-        knob: String::new(),
-        run: Box::new(|| ((structure.build)(&scene), 0)),
-    });
-    let (builds, built) = Study::measure("", 1, contenders.collect(), |_| Vec::new());
+    let built = time_in_turn(1, structures.iter().map(|structure| || (structure.build)(&scene)));
 
-    let rays = Rays::of(&scene, size, &*built.last().expect("an index").index);
+    let rays = Rays::of(&scene, size, &*built.last().expect("an index").1.index);
     let count_of_rays = rays.iter().map(|rays| rays.queries.len()).sum();
-    let contenders = structures.iter().zip(&built).map(|(structure, built)| Contender {
-        label: structure.name.to_owned(),
-        color: method_color(structure.name),
-        knob: String::new(),
-        run: Box::new(|| (rays.iter().map(|rays| rays.trace(&*built.index)).sum::<usize>(), 0)),
-    });
-    let (traces, hits) = Study::measure("", runs, contenders.collect(), |_| Vec::new());
+    let trace = |index: &dyn Intersector| rays.iter().map(|rays| rays.trace(index)).sum::<usize>();
+    let traces = time_in_turn(runs, built.iter().map(|(_, built)| || trace(&*built.index)));
 
     let mut answers = None;
-    let watched = structures.iter().zip(&built).zip(hits).map(|((structure, built), hits)| {
+    let each = structures.iter().zip(&built).zip(&traces);
+    let watched = each.map(|((structure, (build, built)), (trace, hits))| {
         let mut counts = TestCounts::default();
         let mut found = Vec::new();
         for rays in &rays {
-            let (hits, work) = rays.watch(&*built.index);
+            let (met, work) = rays.watch(&*built.index);
             counts.boxes += work.boxes;
             counts.cells += work.cells;
             counts.primitives += work.primitives;
@@ -103,9 +93,9 @@ fn measure(family: Family, count: u32, size: ImageSize, runs: usize) -> Vec<Case
                 Kind::Shadow => (0, 0),
                 _ => (hit.t.to_bits(), hit.primitive.0),
             };
-            found.extend(hits.into_iter().map(|hit| hit.map(key)));
+            found.extend(met.into_iter().map(|hit| hit.map(key)));
         }
-        assert_eq!(found.iter().flatten().count(), hits, "{}: {}", family.name, structure.name);
+        assert_eq!(found.iter().flatten().count(), *hits, "{}: {}", family.name, structure.name);
         let wanted = answers.get_or_insert_with(|| found.clone());
         assert!(*wanted == found, "{} differs in {}", structure.name, family.name);
         Case {
@@ -113,11 +103,11 @@ fn measure(family: Family, count: u32, size: ImageSize, runs: usize) -> Vec<Case
             triangles: scene.mesh.triangles.len(),
             name: structure.name,
             rays: count_of_rays,
-            hits,
+            hits: *hits,
             counts,
             bytes: built.bytes,
-            build: builds.seconds(structure.name, "").low,
-            trace: traces.seconds(structure.name, "").low,
+            build: build.low,
+            trace: trace.low,
         }
     });
     watched.collect()

@@ -176,6 +176,11 @@ impl<'s> Wide<'s> {
         Self::with_kernel(scene, Kernel::Scalar(Scalar))
     }
 
+    /// Whether [`Wide::build`] makes use of vectors of this processor.
+    pub fn has_vectors() -> bool {
+        !matches!(Kernel::best(), Kernel::Scalar(_))
+    }
+
     fn with_kernel(scene: &'s Scene, kernel: Kernel) -> Self {
         let tree = BinaryTree::of_single_primitives(scene);
         let collapse::Collapsed { nodes, leaves } = collapse::collapse(&tree);

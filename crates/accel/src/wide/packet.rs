@@ -114,6 +114,9 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
         range: Interval,
     ) -> Option<Self> {
         let first = rays.first()?;
+        if rays.iter().any(|ray| ray.origin != first.origin) {
+            return None;
+        }
         let origin = wide.frame.point(first.origin);
         let direction = first.direction.to_array();
         let last = (0..3).max_by(|&a, &b| direction[a].abs().total_cmp(&direction[b].abs()))?;
@@ -133,7 +136,7 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
             let d = ray.direction.to_array();
             let along = sign * d[last];
             let slope = DVec2::new(d[axes[0]], d[axes[1]]) / along;
-            alike &= ray.origin == first.origin && along > 0.0;
+            alike &= along > 0.0;
             (low, high) = (low.min(slope), high.max(slope));
             least = least.min(along);
             let per_unit = along * wide.frame.to_unit;

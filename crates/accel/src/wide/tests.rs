@@ -13,7 +13,7 @@ use crate::hard_sets::{hard_sets, triangles};
 
 fn kernels() -> Vec<Kernel> {
     let mut kernels = vec![Kernel::Scalar(Scalar)];
-    if !matches!(Kernel::best(), Kernel::Scalar(_)) {
+    if Wide::has_vectors() {
         kernels.push(Kernel::best());
     }
     kernels
