@@ -142,6 +142,46 @@ fn heat() {
     }
 }
 
+/// 4.9: a group of rays asks no fewer boxes than one of its rays and no more than all of them, and groups
+/// of diffuse rays share least.
+#[test]
+fn coherence() {
+    let rows = rows("4.9");
+    let boxes = |family: &str, kind: &str| -> Vec<(f64, f64)> {
+        let of = rows.iter().filter(|row| row.text("family") == family && row.text("kind") == kind);
+        let of = of.filter(|row| !row.text("group").is_empty());
+        of.map(|row| (row.number("group"), row.number("boxes_per_ray"))).collect()
+    };
+    for family in ["scan", "town"] {
+        let [primary, shadow, diffuse] =
+            ["primary", "shadow", "diffuse"].map(|kind| boxes(family, kind));
+        for cases in [&primary, &shadow, &diffuse] {
+            let (one, alone) = cases[0];
+            assert_eq!((one, cases.len()), (1.0, 5));
+            for pair in cases.windows(2) {
+                assert!(pair[1].1 < pair[0].1, "{family}: {cases:?}");
+            }
+            assert!(
+                cases.iter().all(|(group, boxes)| boxes * group >= alone),
+                "{family}: {cases:?}"
+            );
+        }
+        assert!((0..2).all(|k| [&primary, &shadow][k][3].1 < diffuse[3].1));
+    }
+}
+
+/// 4.10: neither lanes nor threads change an answer; 32 bits do.
+#[test]
+fn hardware() {
+    let rows = rows("4.10");
+    assert_eq!(rows.len(), 2 * 5);
+    for ways in rows.chunks(5) {
+        assert!(ways[0].text("way").starts_with("obvhs") && ways[0].number("wrong") > 0.0);
+        assert!(ways[1..].iter().all(|row| row.text("way").starts_with("wide")));
+        assert!(ways[1..].iter().all(|row| row.text("wrong") == "0"), "{ways:?}");
+    }
+}
+
 /// 4.11: none of the indexes errs for any class of rays, on any of the three scenes; each of the naive ones
 /// does.
 #[test]

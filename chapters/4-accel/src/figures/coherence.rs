@@ -41,8 +41,8 @@ struct Timed {
 }
 
 pub fn make(effort: Effort) -> Finished {
-    let counts: &[u32] = effort.pick(&[100, 1_000], &[100, 1_000, 10_000, 100_000]);
-    let (size, runs) = effort.pick((ImageSize::new(32, 32), 1), (ImageSize::new(512, 512), 5));
+    let counts: &[u32] = effort.pick(&[100, 10_000], &[100, 1_000, 10_000, 100_000]);
+    let (size, runs) = effort.pick((ImageSize::new(64, 64), 1), (ImageSize::new(512, 512), 5));
     let (mut cases, mut timed) = (Vec::new(), Vec::new());
     let (mut asked, mut same) = (0, true);
     for name in FAMILIES {

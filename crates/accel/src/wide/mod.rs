@@ -37,13 +37,15 @@ use lanes::avx2::Avx2;
 ///
 /// # What makes it fast, and what keeps it exact
 ///
-/// - Eight slabs take 6 multiply-adds, 6 minima and maxima and one comparison; one box takes as many.
+/// - Eight slabs take 6 multiply-adds, 6 minima and maxima and one comparison; one box takes as many. What
+///   vectors gain over the same lane by lane, and threads over one, is plate 4.10's.
 /// - Children are visited near to far. With one or two of them met the nearer never passes through the stack.
 /// - Triangles are filtered eight at a time in `f32`, against *bounds* instead of 0: the filter keeps all that
 ///   `f64` might accept. Most that it keeps are *certain*: `f64` must accept them too, so they shorten
 ///   the ray at once, and a shadow ray ends there without any `f64`.
-/// - `f64` decides among the few that are left, at the end of the walk. The answer is that of
-///   [`lancer_core::intersector::LinearScan`], bit for bit.
+/// - `f64` decides among the few that are left, at the end of the walk; what it will read is fetched when
+///   the filter keeps it. The answer is that of [`lancer_core::intersector::LinearScan`], bit for bit.
+/// - Rays of one origin are walked as a packet, [`Intersector::closest_hits`]; what that gains is plate 4.9's.
 ///
 /// # The bounds
 ///
