@@ -56,24 +56,29 @@ use lanes::avx2::Avx2;
 /// Δ = N·d     T = N·C     U = R·f     V = −R·e     W = Δ − U − V
 /// ```
 ///
-/// Let u = 2⁻²⁴, D = 1 + |o| (so |C| ≤ D), δ = |d| and s = the longest edge component, all in the maximum
-/// norm. Rounding a, o, and their difference moves C by 2 u D; e and f were rounded from exact differences and
-/// are off by u s, d by u δ. To first order in u, without any fused rounding, each product's operands and the operations themselves add:
+/// Let u = 2⁻²⁴, D = 1 + |o|, c = |C|, δ = |d| and s = the longest edge component, all in the maximum
+/// norm. Rounding a, o, and their difference moves C by u (D + c); e and f were rounded from exact differences
+/// and are off by u s, d by u δ. To first order in u, without any fused rounding, each product's operands and
+/// the operations themselves add:
 ///
 /// ```text
-/// R   ≤ 2 D δ      off by  2 (2 + 1) u D δ + 4 u D δ            =  10 u D δ
-/// U,V ≤ 6 D δ s    off by  3 (10 + 2) u D δ s + 3 · 3 · 2 u D δ s =  54 u D δ s
-/// N   ≤ 2 s²       off by  2 · 2 u s² + 4 u s²                  =   8 u s²
-/// Δ   ≤ 6 s² δ     off by  3 (8 + 2) u s² δ + 3 · 3 · 2 u s² δ  =  48 u s² δ
-/// T   ≤ 6 s² D     off by  3 (8 + 4) u s² D + 3 · 3 · 2 u s² D  =  54 u s² D
-/// W                off by  2 · 54 + 2 · 48 + 18 + 24            = 246 u D δ s      since s ≤ 2 D
+/// R   ≤ 2 c δ      off by  2 u δ (D + 2 c) + 4 u c δ                         =  u δ (2 D + 8 c)
+/// U,V ≤ 6 c δ s    off by  3 u δ s (2 D + 8 c) + 3 · 2 u c δ s + 18 u c δ s  =  u δ s (6 D + 48 c)
+/// N   ≤ 2 s²       off by  2 · 2 u s² + 4 u s²                               =  8 u s²
+/// Δ   ≤ 6 s² δ     off by  3 (8 + 2) u s² δ + 18 u s² δ                      =  48 u s² δ
+/// T   ≤ 6 s² c     off by  3 · 8 u s² c + 3 · 2 u s² (D + c) + 18 u s² c     =  u s² (6 D + 48 c)
+/// W                off by  2 (6 D + 48 c) + 48 s, and (6 s + 6 c) + (6 s + 12 c)
+///                          for two differences                               =  u δ s (12 D + 114 c + 60 s)
 /// ```
 ///
-/// so with e = 256 u D δ s, e_Δ = 64 u s² δ and e_T = 64 u s² D whatever has U, V, W ≥ 0 is kept by
-/// U, V, W ≥ −e, and U, V, W > e, T > e_T, |Δ| > 2 e_Δ imply a true hit. The slack beyond first order, and the noise of
-/// the `f64` test (2⁻²⁹ of this in U, V, W; its own bound on t is below 60 · 2⁻⁵³ D² s / Δ) are covered
-/// because s is at least 2⁻²⁰. An origin beyond 4 is moved close to the scene, which adds its rounding to D;
-/// from beyond 16 no hit is called certain: at |Δ| = 2 e_Δ and s = 2⁻²⁰ the bound on t from there comes near t.
+/// so with e = u δ s (16 D + 128 c + 64 s), e_Δ = 64 u s² δ and e_T = u s² (8 D + 56 c) whatever has
+/// U, V, W ≥ 0 is kept by U, V, W ≥ −e, and U, V, W > e, T > e_T, |Δ| > 2 e_Δ imply a true hit. The part
+/// with c lets what is near be small: a teapot in a stadium is told apart from its neighbours' triangles.
+///
+/// The slack beyond first order, and the noise of the `f64` test (2⁻²⁹ of the above in U, V, W; its own bound
+/// on t is below 60 · 2⁻⁵³ D² s / Δ) are covered because s is at least 2⁻²⁰ and D at most 17: of e_T a
+/// part of 2 u s² D is free. An origin beyond 4 is moved close to the scene, which adds its rounding to D;
+/// from beyond 16 no hit is called certain.
 pub struct Wide<'s> {
     scene: &'s Scene,
     frame: Frame,

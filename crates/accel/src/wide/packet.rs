@@ -8,7 +8,7 @@ use smallvec::SmallVec;
 
 use super::collapse::WIDTH;
 use super::lanes::{Lanes, Vectors, cross, dot, splat3, sub3};
-use super::walk::{self, Bounds, Filtered, LeafBounds, MOST_PENDING, Stack, U, child, near};
+use super::walk::{self, Bounds, Filtered, MOST_PENDING, Stack, TriangleBounds, U, child, near};
 use super::{Child, Node, Wide};
 
 /// Rays of a packet at most: 8 × 8 pixels.
@@ -58,7 +58,7 @@ pub(super) fn closest<L: Lanes>(
 /// # Which triangles
 ///
 /// U, V and Δ of [`Wide`] are linear in the direction: U = d·(f × C), V = d·(C × e), Δ = d·N, and T is the
-/// same for all rays. f × C and C × e are off by 2 (2 + 1) u D s + 4 u D s = 10 u D s, as R there, so the same
+/// same for all rays. f × C and C × e are off by u s (2 D + 8 c), as R there by u δ (2 D + 8 c), so the same
 /// bounds hold, and the same comparisons: first for the range of all slopes, eight triangles at a time, then
 /// for what is left eight rays at a time.
 pub(super) struct Packet<'p, 's, L: Lanes> {
@@ -297,7 +297,7 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
         let v = self.turned(cross(l, c, e));
         let det = self.turned(normal);
 
-        let bounds = self.bounds.of(l, words[0]);
+        let bounds = self.bounds.of(l, words[0], c);
         let spread = Spread {
             middle: [l.splat(self.spread.middle[0]), l.splat(self.spread.middle[1])],
             half: [l.splat(self.spread.half[0]), l.splat(self.spread.half[1])],
@@ -306,8 +306,9 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
         if met == 0 {
             return true;
         }
-        let stored = [u[0], u[1], u[2], v[0], v[1], v[2], det[0], det[1], det[2], t];
-        let mut rows = [[0.0; WIDTH]; 10];
+        let TriangleBounds { e, e_t, .. } = bounds;
+        let stored = [u[0], u[1], u[2], v[0], v[1], v[2], det[0], det[1], det[2], t, e, e_t];
+        let mut rows = [[0.0; WIDTH]; 12];
         for (row, x) in rows.iter_mut().zip(stored) {
             *row = l.store(x);
         }
@@ -320,7 +321,11 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
                 v: [rows[3][lane], rows[4][lane], rows[5][lane]],
                 det: [rows[6][lane], rows[7][lane], rows[8][lane]],
                 t: rows[9][lane],
-                bounds,
+                bounds: TriangleBounds {
+                    e: l.splat(rows[10][lane]),
+                    e_t: l.splat(rows[11][lane]),
+                    e_det: bounds.e_det,
+                },
                 id: words[1 + 9 * count + lane].to_bits(),
             };
             let mut vectors = self.vectors_that_may_meet(&triangle);
@@ -446,7 +451,7 @@ impl<F: Copy> Spread<F> {
         &self,
         l: L,
         [u, v, det]: [Vectors<L>; 3],
-        bounds: LeafBounds<F>,
+        bounds: TriangleBounds<F>,
     ) -> u32 {
         let w = sub3(l, sub3(l, det, u), v);
         let (u, v, w) = (self.extremes(l, u), self.extremes(l, v), self.extremes(l, w));
@@ -471,6 +476,6 @@ struct Triangle<F> {
     v: [f32; 3],
     det: [f32; 3],
     t: f32,
-    bounds: LeafBounds<F>,
+    bounds: TriangleBounds<F>,
     id: u32,
 }

@@ -101,37 +101,49 @@ impl<L: Lanes> WideRay<L> {
         let r = cross(l, c, direction);
         let (det, t) = (dot(l, n, direction), dot(l, n, c));
         let (u, v) = (dot(l, r, f), l.sub(l.splat(0.0), dot(l, r, e)));
-        Filtered::new(l, [u, v, det, t], self.bounds.of(l, words[0]), max, (1 << count) - 1)
+        Filtered::new(l, [u, v, det, t], self.bounds.of(l, words[0], c), max, (1 << count) - 1)
     }
 }
 
-/// What 256 u D δ, 64 u δ and 64 u D of the bounds are, for a ray or for several.
+/// What the bounds are made of that a ray has, or several have: u D and u δ.
 pub(super) struct Bounds {
-    edge: f32,
-    det: f32,
-    t: f32,
+    reach: f32,
+    length: f32,
 }
 
-/// The bounds for one leaf.
+/// The bounds of eight triangles: see [`Wide`].
 #[derive(Clone, Copy)]
-pub(super) struct LeafBounds<F> {
+pub(super) struct TriangleBounds<F> {
     pub(super) e: F,
     pub(super) e_t: F,
-    e_det: F,
+    pub(super) e_det: F,
 }
 
 impl Bounds {
     /// D is `reach`, δ is `length`.
     #[inline(always)]
     pub(super) fn new(reach: f32, length: f32) -> Self {
-        Self { edge: 256.0 * U * reach * length, det: 64.0 * U * length, t: 64.0 * U * reach }
+        Self { reach: U * reach, length }
     }
 
-    /// For a leaf whose longest edge component is `s`.
+    /// Of triangles with the longest edge component `s`, seen along C = `from_origin`.
     #[inline(always)]
-    pub(super) fn of<L: Lanes>(&self, l: L, s: f32) -> LeafBounds<L::F> {
-        let e_det = l.splat(self.det * s * s);
-        LeafBounds { e: l.splat(self.edge * s), e_t: l.splat(self.t * s * s), e_det }
+    pub(super) fn of<L: Lanes>(
+        &self,
+        l: L,
+        s: f32,
+        from_origin: Vectors<L>,
+    ) -> TriangleBounds<L::F> {
+        let [x, y, z] = from_origin;
+        let c = l.max(l.abs(x), l.max(l.abs(y), l.abs(z)));
+        let scale = s * self.length;
+        let (near, far) = (scale * (16.0 * self.reach + 64.0 * U * s), scale * 128.0 * U);
+        let (near_t, far_t) = (s * s * 8.0 * self.reach, s * s * 56.0 * U);
+        TriangleBounds {
+            e: l.mul_add(c, l.splat(far), l.splat(near)),
+            e_t: l.mul_add(c, l.splat(far_t), l.splat(near_t)),
+            e_det: l.splat(64.0 * U * s * scale),
+        }
     }
 }
 
@@ -144,7 +156,7 @@ pub(super) struct Filtered<F> {
     t: F,
     det: F,
     det_most: F,
-    bounds: LeafBounds<F>,
+    bounds: TriangleBounds<F>,
 }
 
 impl<F: Copy> Filtered<F> {
@@ -153,7 +165,7 @@ impl<F: Copy> Filtered<F> {
     pub(super) fn new<L: Lanes<F = F>>(
         l: L,
         [u, v, det, t]: [F; 4],
-        bounds: LeafBounds<F>,
+        bounds: TriangleBounds<F>,
         max: F,
         valid: u32,
     ) -> Self {
