@@ -19,6 +19,8 @@ const FARTHEST: f64 = 4.0;
 const STEEPEST: f64 = 2.0;
 /// A packet pays where a triangle is at least this part of the packet wide.
 const WIDEST: f64 = 0.25;
+/// With more work than this each ray goes alone: about what all of them cost alone.
+const MOST_WORK: usize = 8 * RAYS;
 /// Hits that cannot be told apart in `f32`, at most; with more of them each ray goes alone.
 const DOUBTS: usize = 256;
 
@@ -90,6 +92,8 @@ pub(super) struct Packet<'p, 's, L: Lanes> {
     best: [[u32; WIDTH]; VECTORS],
     /// Ray and primitive of what might be closer, or not.
     doubts: SmallVec<[u64; DOUBTS]>,
+    /// The work so far, in visits of a node: a leaf counts as two, eight rays and a triangle as one.
+    spent: usize,
 }
 
 /// One side of the packet: a box is beside it if ±x + `factor` · z + `offset` > 0, x being the box's lowest
@@ -208,6 +212,7 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
             lowest: [[f32::INFINITY; WIDTH]; VECTORS],
             best: [[NONE; WIDTH]; VECTORS],
             doubts: SmallVec::new(),
+            spent: 0,
         })
     }
 
@@ -224,18 +229,22 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
         size >= WIDEST * f64::from(width) * depth
     }
 
-    /// Walks to the leaves that the packet meets, near ones first. Returns whether all is well: not if too
-    /// many hits cannot be told apart.
+    /// Walks to the leaves that the packet meets, near ones first. Returns whether all is well: not if it is
+    /// too much work, or too many hits cannot be told apart.
     #[inline(always)]
     pub(super) fn walk(&mut self) -> bool {
         let mut stack = Stack::<MOST_PENDING>::new();
         let mut next = Child::node(0);
         loop {
+            if self.spent > MOST_WORK {
+                return false;
+            }
             if next.is_leaf() {
                 if !self.visit_leaf(next) {
                     return false;
                 }
             } else {
+                self.spent += 1;
                 let node = &self.wide.nodes[next.0 as usize];
                 let (near, met) = self.enter(node);
                 if met != 0 {
@@ -282,6 +291,7 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
 
     #[inline(always)]
     fn visit_leaf(&mut self, leaf: Child) -> bool {
+        self.spent += 2;
         let l = self.lanes;
         let count = leaf.count();
         let words = &self.wide.leaves[leaf.offset()..][..1 + 10 * count];
@@ -332,6 +342,7 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
             while vectors != 0 {
                 let vector = vectors.trailing_zeros() as usize % VECTORS;
                 vectors &= vectors - 1;
+                self.spent += 1;
                 if self.doubts.len() + WIDTH > DOUBTS {
                     return false;
                 }
