@@ -2,10 +2,12 @@
 //! triangles.
 
 use lancer_core::scene::{PrimitiveId, Scene};
+use rayon::prelude::*;
+use smallvec::SmallVec;
 
-use super::{Child, Node};
+use super::{Child, Node, UNIT};
 use crate::binary_tree::{BinaryTree, TreeNode};
-use crate::four_boxes::{Frame, FrameBox};
+use crate::four_boxes::FrameBox;
 
 /// Children of a node, and primitives of a leaf, at most.
 pub(super) const WIDTH: usize = 8;
@@ -41,18 +43,36 @@ struct Below {
 fn costs(tree: &[TreeNode]) -> Vec<Below> {
     let unknown = Below { cost: [0.0; WIDTH - 1], left: [0; WIDTH], first: 0, count: 0 };
     let mut all = vec![unknown; tree.len()];
-    // Children stand behind their parents.
-    for (index, node) in tree.iter().enumerate().rev() {
-        let area = node.bounds.half_area();
-        all[index] = if node.is_leaf() {
-            let cost = [LEAF_COST * area; WIDTH - 1];
-            Below { cost, left: [0; WIDTH], first: node.first, count: node.count }
-        } else {
-            let [left, right] = node.children().map(|child| &all[child]);
-            inner(area, left, right)
-        };
+    if let Some((root, descendants)) = all.split_first_mut() {
+        *root = cost_of(tree, 0, descendants);
     }
     all
+}
+
+/// Nodes below which the two parts are worked out by different threads.
+const PARALLEL: usize = 1 << 13;
+
+/// Works out what is below a node, and of its descendants, which stand together: the two children, what is
+/// below the left one, what is below the right one.
+fn cost_of(tree: &[TreeNode], index: usize, descendants: &mut [Below]) -> Below {
+    let node = &tree[index];
+    let area = node.bounds.half_area();
+    if node.is_leaf() {
+        let cost = [LEAF_COST * area; WIDTH - 1];
+        return Below { cost, left: [0; WIDTH], first: node.first, count: node.count };
+    }
+    let [left, right] = node.children();
+    let below_right = if tree[right].is_leaf() { None } else { Some(tree[right].children()[0]) };
+    let (children, below) = descendants.split_at_mut(2);
+    let below_left = below_right.map_or(below.len(), |first| first - (right + 1));
+    let (lefts, rights) = below.split_at_mut(below_left);
+    let (left, right) = if lefts.len().min(rights.len()) > PARALLEL {
+        rayon::join(|| cost_of(tree, left, lefts), || cost_of(tree, right, rights))
+    } else {
+        (cost_of(tree, left, lefts), cost_of(tree, right, rights))
+    };
+    (children[0], children[1]) = (left, right);
+    inner(area, &left, &right)
 }
 
 fn inner(area: f32, left: &Below, right: &Below) -> Below {
@@ -96,10 +116,13 @@ pub(super) struct Collapsed {
     pub(super) leaves: Vec<f32>,
 }
 
+/// Leaves that a thread fills at once.
+const LEAVES: usize = 1 << 10;
+
 pub(super) fn collapse(tree: &BinaryTree) -> Collapsed {
-    let mut result = Collapsed { nodes: Vec::new(), leaves: Vec::new() };
+    let mut nodes: Vec<Node> = Vec::new();
     if tree.nodes.is_empty() {
-        return result;
+        return Collapsed { nodes, leaves: Vec::new() };
     }
     let below = costs(&tree.nodes);
     let is_leaf = |index: usize| {
@@ -107,37 +130,67 @@ pub(super) fn collapse(tree: &BinaryTree) -> Collapsed {
         let area = tree.nodes[index].bounds.half_area();
         below.count <= WIDTH as u32 && below.cost[0] >= LEAF_COST * area
     };
+    // Where the words of each leaf begin, and what is in it.
+    let mut leaves: Vec<(usize, &[PrimitiveId])> = Vec::new();
+    let mut words = 0;
     // (a node of the tree, the node and lane that refer to it)
     let mut pending: Vec<(usize, Option<(usize, usize)>)> = vec![(0, None)];
     while let Some((top, referrer)) = pending.pop() {
-        let index = result.nodes.len();
+        let index = nodes.len();
         if let Some((parent, lane)) = referrer {
-            result.nodes[parent].set_child(lane, Child::node(index));
+            nodes[parent].children[lane] = Child::node(index);
         }
-        result.nodes.push(Node::EMPTY);
-        let mut children = Vec::with_capacity(WIDTH);
+        nodes.push(Node::EMPTY);
+        let mut children = SmallVec::new();
         if is_leaf(top) {
             children.push(top);
         } else {
             open(&tree.nodes, &below, top, WIDTH, &mut children);
         }
         for (lane, child) in children.into_iter().enumerate() {
-            result.nodes[index].set_box(lane, tree.nodes[child].bounds);
+            nodes[index].set_box(lane, tree.nodes[child].bounds);
             if is_leaf(child) {
-                let below = below[child];
-                let primitives = &tree.primitives[below.first as usize..][..below.count as usize];
-                let leaf = push_leaf(&mut result.leaves, tree.scene, &tree.frame, primitives);
-                result.nodes[index].set_child(lane, leaf);
+                let Below { first, count, .. } = below[child];
+                let primitives = &tree.primitives[first as usize..][..count as usize];
+                let has_spheres = has_spheres(tree.scene, primitives);
+                nodes[index].children[lane] = Child::leaf(words, primitives.len(), has_spheres);
+                leaves.push((words, primitives));
+                let rows = if has_spheres { 0 } else { 1 + 9 * primitives.len() };
+                words += (rows + primitives.len()).next_multiple_of(UNIT);
             } else {
                 pending.push((child, Some((index, lane))));
             }
         }
     }
-    result
+    Collapsed { nodes, leaves: fill(tree, &leaves, words) }
+}
+
+/// The words of all leaves.
+fn fill(tree: &BinaryTree, leaves: &[(usize, &[PrimitiveId])], count: usize) -> Vec<f32> {
+    let mut words = vec![0.0; count];
+    let mut parts = Vec::new();
+    let mut rest = words.as_mut_slice();
+    for part in leaves.chunks(LEAVES).rev() {
+        let (before, mine) = rest.split_at_mut(part[0].0);
+        parts.push((part, mine));
+        rest = before;
+    }
+    parts.into_par_iter().for_each(|(part, words)| {
+        for (offset, primitives) in part {
+            fill_leaf(tree, primitives, &mut words[offset - part[0].0..]);
+        }
+    });
+    words
 }
 
 /// The at most `most` nodes that a node of the tree is opened into; `WIDTH` opens it in any case.
-fn open(tree: &[TreeNode], below: &[Below], node: usize, most: usize, into: &mut Vec<usize>) {
+fn open(
+    tree: &[TreeNode],
+    below: &[Below],
+    node: usize,
+    most: usize,
+    into: &mut SmallVec<[usize; WIDTH]>,
+) {
     let mut most = most;
     // Fewer may be as good.
     while most > 1 && most < WIDTH && below[node].left[most - 1] == 0 {
@@ -153,35 +206,35 @@ fn open(tree: &[TreeNode], below: &[Below], node: usize, most: usize, into: &mut
     open(tree, below, right, most - lefts, into);
 }
 
+fn has_spheres(scene: &Scene, primitives: &[PrimitiveId]) -> bool {
+    primitives.iter().any(|id| id.0 as usize >= scene.mesh.triangles.len())
+}
+
 /// Writes a leaf: see [`super::Wide`] for its words.
-fn push_leaf(
-    leaves: &mut Vec<f32>,
-    scene: &Scene,
-    frame: &Frame,
-    primitives: &[PrimitiveId],
-) -> Child {
-    let offset = leaves.len();
-    let triangles = scene.mesh.triangles.len();
-    let has_sphere = primitives.iter().any(|id| id.0 as usize >= triangles);
-    if !has_sphere {
-        let rows: Vec<[f32; 9]> = primitives
-            .iter()
-            .map(|id| {
-                let [a, b, c] = scene.mesh.corners(id.0 as usize);
-                // Edges are rounded in proportion to their own length, not to their place.
-                let parts = [frame.point(a), frame.vector(b - a), frame.vector(c - a)];
-                std::array::from_fn(|k| parts[k / 3][k % 3] as f32)
-            })
-            .collect();
-        let edges = rows.iter().flat_map(|row| &row[3..]);
-        leaves.push(edges.fold(super::SHORTEST, |longest, edge| longest.max(edge.abs())));
-        for k in 0..9 {
-            leaves.extend(rows.iter().map(|row| row[k]));
+fn fill_leaf(tree: &BinaryTree, primitives: &[PrimitiveId], words: &mut [f32]) {
+    let count = primitives.len();
+    let mut ids = words;
+    if !has_spheres(tree.scene, primitives) {
+        let (rows, rest) = ids.split_at_mut(1 + 9 * count);
+        ids = rest;
+        let mut longest = super::SHORTEST;
+        for (lane, id) in primitives.iter().enumerate() {
+            let [a, b, c] = tree.scene.mesh.corners(id.0 as usize);
+            // Edges are rounded in proportion to their own length, not to their place.
+            let frame = &tree.frame;
+            let parts = [frame.point(a), frame.vector(b - a), frame.vector(c - a)];
+            for (k, part) in parts.into_iter().flat_map(|part| part.to_array()).enumerate() {
+                rows[1 + k * count + lane] = part as f32;
+                if k >= 3 {
+                    longest = longest.max((part as f32).abs());
+                }
+            }
         }
+        rows[0] = longest;
     }
-    leaves.extend(primitives.iter().map(|id| f32::from_bits(id.0)));
-    leaves.resize(leaves.len().next_multiple_of(super::UNIT), 0.0);
-    Child::leaf(offset, primitives.len(), has_sphere)
+    for (word, id) in ids.iter_mut().zip(primitives) {
+        *word = f32::from_bits(id.0);
+    }
 }
 
 impl Node {
@@ -190,9 +243,5 @@ impl Node {
             self.planes[axis][0][lane] = bounds.min[axis];
             self.planes[axis][1][lane] = bounds.max[axis];
         }
-    }
-
-    fn set_child(&mut self, lane: usize, child: Child) {
-        self.children[lane] = child;
     }
 }
