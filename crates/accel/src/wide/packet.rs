@@ -216,17 +216,22 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
         })
     }
 
-    /// Whether the triangles are large enough, judged by what one of the rays hits.
+    /// Whether the triangles are large enough, judged by what two of the rays hit.
     #[inline(always)]
     fn pays(&self) -> bool {
-        let ray = &self.rays[self.rays.len() / 2];
-        let hit = walk::closest(self.lanes, self.wide, ray, self.range, &mut ());
-        let Some(hit) = hit else { return true };
-        let [a, b, c] = self.wide.scene.mesh.corners(hit.primitive.0 as usize);
-        let size = (b - a).abs().max((c - a).abs()).max_element();
-        let depth = hit.t * ray.direction.to_array()[self.axes[2]].abs();
-        let width = 2.0 * self.spread.half[0].max(self.spread.half[1]);
-        size >= WIDEST * f64::from(width) * depth
+        let width = 2.0 * f64::from(self.spread.half[0].max(self.spread.half[1]));
+        for k in [0, self.rays.len() / 4 * 3] {
+            let ray = &self.rays[k];
+            let hit = walk::closest(self.lanes, self.wide, ray, self.range, &mut ());
+            let Some(hit) = hit else { continue };
+            let [a, b, c] = self.wide.scene.mesh.corners(hit.primitive.0 as usize);
+            let size = (b - a).abs().max((c - a).abs()).max_element();
+            let depth = hit.t * ray.direction.to_array()[self.axes[2]].abs();
+            if size < WIDEST * width * depth {
+                return false;
+            }
+        }
+        true
     }
 
     /// Walks to the leaves that the packet meets, near ones first. Returns whether all is well: not if it is
