@@ -55,7 +55,7 @@ pub(super) fn closest<L: Lanes>(
 /// With the slopes p between p₀ and p₁ a box is beside the packet if x − o_x − p₁ w > 0 in all of it, w being
 /// the depth, or < 0 with p₀; the same for q. Of the box only one corner counts. Slopes are rounded apart,
 /// and what multiplies the origin is worked out in `f64` with the rounded slopes, so each side errs by
-/// 2⁻²⁴ (6 + 6 D), D = 1 + |o|, for slopes up to 2: less than the pad of 2⁻²⁴ 16 D.
+/// 2⁻²⁴ (8 + 6 D), D = 1 + |o|, for slopes up to 2: less than the pad of 2⁻²⁴ 16 D.
 ///
 /// # Which triangles
 ///
