@@ -72,7 +72,10 @@ use lanes::avx2::Avx2;
 /// ```
 ///
 /// so with e = u δ s (16 D + 128 c + 64 s), e_Δ = 64 u s² δ and e_T = u s² (8 D + 56 c) whatever has
-/// U, V, W ≥ 0 is kept by U, V, W ≥ −e, and U, V, W > e, T > e_T, |Δ| > 2 e_Δ imply a true hit. The part
+/// U, V, W ≥ 0 is kept by U, V, W ≥ −e, and U, V, W > e, T > e_T, |Δ| > 2 e_Δ imply a true hit. All four are
+/// turned by the sign of Δ, which is wrong only where |Δ| ≤ 48 u s² δ. Then a true hit has U and V no larger
+/// than that, which e covers, and T = t Δ no larger than 48 u s² (c + s), since no point of the triangle is
+/// farther than c + s: so T is kept from −e'_T = −(2 e_T + 64 u s³) on. The part
 /// with c lets what is near be small: a teapot in a stadium is told apart from its neighbours' triangles.
 ///
 /// The slack beyond first order, and the noise of the `f64` test (2⁻²⁹ of the above in U, V, W; its own bound

@@ -321,9 +321,10 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
         if met == 0 {
             return true;
         }
-        let TriangleBounds { e, e_t, .. } = bounds;
-        let stored = [u[0], u[1], u[2], v[0], v[1], v[2], det[0], det[1], det[2], t, e, e_t];
-        let mut rows = [[0.0; WIDTH]; 12];
+        let TriangleBounds { e, e_t, e_det, e_behind } = bounds;
+        let stored =
+            [u[0], u[1], u[2], v[0], v[1], v[2], det[0], det[1], det[2], t, e, e_t, e_behind];
+        let mut rows = [[0.0; WIDTH]; 13];
         for (row, x) in rows.iter_mut().zip(stored) {
             *row = l.store(x);
         }
@@ -339,7 +340,8 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
                 bounds: TriangleBounds {
                     e: l.splat(rows[10][lane]),
                     e_t: l.splat(rows[11][lane]),
-                    e_det: bounds.e_det,
+                    e_det,
+                    e_behind: l.splat(rows[12][lane]),
                 },
                 id: words[1 + 9 * count + lane].to_bits(),
             };

@@ -91,7 +91,13 @@ fn the_bounds_hold() {
             3 => a + (e + f) * (0.5 + 1e-7 * vector().x),
             _ => a + vector() * size * 0.05,
         };
-        let origin = match k % 6 {
+        let origin = match k % 8 {
+            // Nearly edge-on, so that the sign of the determinant is in doubt.
+            6 | 7 => {
+                let along = (e * vector().x + f * vector().y).normalize_or_zero();
+                let normal = e.cross(f).normalize_or_zero();
+                target + along * 3.0 * vector().x + normal * 1e-7 * vector().x
+            }
             0 => target + vector() * size,
             1 => 3.0 * vector(),
             2 => 2e3 * vector(),

@@ -117,6 +117,8 @@ pub(super) struct TriangleBounds<F> {
     pub(super) e: F,
     pub(super) e_t: F,
     pub(super) e_det: F,
+    /// e'_T
+    pub(super) e_behind: F,
 }
 
 impl Bounds {
@@ -139,10 +141,12 @@ impl Bounds {
         let scale = s * self.length;
         let (near, far) = (scale * (16.0 * self.reach + 64.0 * U * s), scale * 128.0 * U);
         let (near_t, far_t) = (s * s * 8.0 * self.reach, s * s * 56.0 * U);
+        let e_t = l.mul_add(c, l.splat(far_t), l.splat(near_t));
         TriangleBounds {
             e: l.mul_add(c, l.splat(far), l.splat(near)),
-            e_t: l.mul_add(c, l.splat(far_t), l.splat(near_t)),
+            e_t,
             e_det: l.splat(64.0 * U * s * scale),
+            e_behind: l.mul_add(e_t, l.splat(2.0), l.splat(64.0 * U * s * s * s)),
         }
     }
 }
@@ -174,10 +178,9 @@ impl<F: Copy> Filtered<F> {
         let inside = l.min(u, l.min(v, l.sub(l.sub(det, u), v)));
         let det_most = l.add(det, bounds.e_det);
         let zero = l.splat(0.0);
-        let (e, e_t) = (l.sub(zero, bounds.e), l.sub(zero, bounds.e_t));
-        let kept = l.at_least(inside, e)
-            & l.at_least(t, e_t)
-            & l.at_least(l.mul_sub(max, det_most, t), e_t)
+        let kept = l.at_least(inside, l.sub(zero, bounds.e))
+            & l.at_least(t, l.sub(zero, bounds.e_behind))
+            & l.at_least(l.mul_sub(max, det_most, t), l.sub(zero, bounds.e_t))
             & valid;
         Self { kept, inside, t, det, det_most, bounds }
     }
