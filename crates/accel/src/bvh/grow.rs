@@ -138,19 +138,43 @@ fn around_centers(items: &[Item]) -> FrameBox {
     })
 }
 
-/// Bins of equal width along the three axes of the box around the centres.
+/// Bins of equal width along the three axes of the box around the centres, and bins of sizes: a floor under a
+/// teapot has its centre among the teapot's, and would make every box on the way down as large as itself.
 #[derive(Clone, Copy)]
 struct Bins {
     start: Vec3A,
     per_unit: Vec3A,
+    /// The longest side of the box around the centres.
+    extent: f32,
 }
+
+/// The number of the bins of sizes, after the three axes.
+const SIZES: usize = 3;
+/// Nodes of fewer items are not divided by size.
+const FEWEST_BY_SIZE: usize = 64;
 
 impl Bins {
     fn of(centers: FrameBox) -> Self {
         let width = centers.max - centers.min;
         // Where all centres coincide all are in bin 0.
         let per_unit = Vec3A::splat(BINS as f32) / width.max(Vec3A::splat(f32::MIN_POSITIVE));
-        Self { start: centers.min, per_unit }
+        Self { start: centers.min, per_unit, extent: width.max_element() }
+    }
+
+    /// An item's bin by its size: half as large is one bin further.
+    #[inline(always)]
+    fn of_size(&self, item: &Item) -> usize {
+        // Centres are doubled, sides are not.
+        let size = 2.0 * (item.bounds.max - item.bounds.min).max_element();
+        let halvings = self.extent.to_bits().saturating_sub(size.to_bits()) >> 23;
+        (halvings as usize).min(BINS - 1)
+    }
+
+    /// Whether an item is on the left side of a plane.
+    #[inline(always)]
+    fn is_left(&self, item: &Item, axis: usize, last: usize) -> bool {
+        let bin = if axis == SIZES { self.of_size(item) } else { self.index(item)[axis] };
+        bin <= last
     }
 
     /// An item's bin on each axis.
@@ -195,7 +219,7 @@ impl Plane {
     fn partition(&self, items: &mut [Item]) -> usize {
         let mut left = 0;
         for k in 0..items.len() {
-            if self.bins.index(&items[k])[self.axis] <= self.last {
+            if self.bins.is_left(&items[k], self.axis, self.last) {
                 items.swap(left, k);
                 left += 1;
             }
@@ -208,10 +232,16 @@ impl Plane {
 #[inline(never)] // The bins must not take room on the stack of the recursion.
 fn best_plane(items: &[Item]) -> Option<Plane> {
     let bins = Bins::of(around_centers(items));
-    let mut contents = [[Content::NONE; BINS]; 3];
+    let mut contents = [[Content::NONE; BINS]; 4];
     for item in items {
         for (contents, index) in contents.iter_mut().zip(bins.index(item)) {
             contents[index] = contents[index].and(Content { bounds: item.bounds, count: 1 });
+        }
+    }
+    if items.len() >= FEWEST_BY_SIZE {
+        for item in items {
+            let content = &mut contents[SIZES][bins.of_size(item)];
+            *content = content.and(Content { bounds: item.bounds, count: 1 });
         }
     }
     let mut best: Option<Plane> = None;
