@@ -34,6 +34,18 @@ pub struct Figure {
 }
 
 impl Figure {
+    /// For tests: no two figures share a number or a name, by either of which they are asked for.
+    ///
+    /// # Panics
+    /// If two do.
+    pub fn prove_names(figures: &[Self]) {
+        let mut names: Vec<&str> =
+            figures.iter().flat_map(|figure| [figure.id, figure.name]).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), 2 * figures.len());
+    }
+
     /// For tests: the figure of that id, made at its quick size, whose claim holds on a legible plate.
     ///
     /// # Panics

@@ -206,9 +206,10 @@ impl Content {
     }
 }
 
-/// A plane between two bins, and what the primitives on its sides cost.
+/// A plane between two bins, of places or of sizes, and what the primitives on its sides cost.
 struct Plane {
     bins: Bins,
+    /// An axis, or [`SIZES`].
     axis: usize,
     /// The last bin on the left side.
     last: usize,

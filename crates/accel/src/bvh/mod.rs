@@ -26,8 +26,9 @@ pub enum Split {
     /// meets a child with the probability of the ratio of their surfaces, so
     /// C = 1 + (A(left) · n(left) + A(right) · n(right)) / A(node)
     /// is what the node costs after the split, and n(node) without. The centres are thrown into bins
-    /// along each axis and only the planes between bins are compared, and cuts between sizes. Source: Wald, *On fast
-    /// Construction of SAH-based Bounding Volume Hierarchies*, RT 2007.
+    /// along each axis, and only the planes between bins are compared; and cuts between the large and
+    /// the small. Source, but for those: Wald, *On fast Construction of SAH-based Bounding Volume
+    /// Hierarchies*, RT 2007.
     #[default]
     Sah,
 }

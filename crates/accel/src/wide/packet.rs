@@ -149,7 +149,7 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
             slopes[1][k / WIDTH][k % WIDTH] = slope.y as f32;
             max[k / WIDTH][k % WIDTH] = ((range.max * per_unit) as f32).next_up();
         }
-        // An accepting comparison: a NaN ends here.
+        // A NaN along the axis is not above 0; beside it, it meets nothing, as it does alone.
         let flat = low.min_element() >= -STEEPEST && high.max_element() <= STEEPEST;
         if !(alike && flat && least > 1e-9 && min < 1e9) {
             return None;

@@ -91,7 +91,7 @@ fn the_bounds_hold() {
             3 => a + (e + f) * (0.5 + 1e-7 * vector().x),
             _ => a + vector() * size * 0.05,
         };
-        let origin = match k % 8 {
+        let origin = match k / 16 % 8 {
             // Nearly edge-on, so that the sign of the determinant is in doubt.
             6 | 7 => {
                 let along = (e * vector().x + f * vector().y).normalize_or_zero();

@@ -24,7 +24,8 @@ const FARTHEST: f32 = 16.0;
 /// Unit roundoff of `f32`.
 pub(super) const U: f32 = 0.5 * f32::EPSILON;
 
-/// A ray in the scene's frame, broadcast to all lanes.
+/// A ray in the scene's frame. Its numbers are broadcast to the lanes where they are used: stored eight times
+/// each they would cost more.
 pub(super) struct WideRay<L: Lanes> {
     lanes: L,
     pub(super) slabs: FourSlabs,
@@ -105,7 +106,7 @@ impl<L: Lanes> WideRay<L> {
     }
 }
 
-/// What the bounds are made of that a ray has, or several have: u D and u δ.
+/// What the bounds are made of that a ray has, or several have: u D and δ.
 pub(super) struct Bounds {
     reach: f32,
     length: f32,
