@@ -138,8 +138,8 @@ impl Frame {
 /// a tiny one of its sign: then no 0 · ∞ = NaN can arise.
 #[derive(Clone, Copy, Debug)]
 pub struct FourSlabs {
-    /// Per axis: the ray travels towards smaller coordinates.
-    negative: [bool; 3],
+    /// A bit per axis: the ray travels towards smaller coordinates.
+    pub(crate) negative: u32,
     /// 1 / direction, never infinite.
     pub inverse: Vec3A,
     /// −origin · inverse, less the pad.
@@ -188,31 +188,36 @@ impl Placed {
 
 /// Components of a direction below this count as this; the largest is at least 2³⁰ times as long.
 const TINY: f32 = 1e-20;
+/// An origin with a coordinate beyond this is far, a direction with a component beyond this, or none above its
+/// inverse, is extreme.
+const NEAR: f32 = 8.0;
+const LONG: f32 = 1e9;
 const PAD: f32 = 8.0 * 0.5 * f32::EPSILON;
 
 impl FourSlabs {
     /// Prepares the tests of a ray.
     #[inline(always)] // Written to memory and read back in other pieces it costs as much as a node.
     pub fn new(ray: &Ray, frame: &Frame) -> Self {
-        let origin = frame.point(ray.origin);
-        let length_squared = ray.direction.length_squared();
-        let is_near =
-            origin.length_squared() <= 16.0 && length_squared > 1e-18 && length_squared < 1e18;
+        let origin = frame.point(ray.origin).as_vec3a();
+        let direction = ray.direction.as_vec3a();
+        let length = direction.abs();
+        let is_near = origin.abs().cmple(Vec3A::splat(NEAR)).all()
+            && length.cmplt(Vec3A::splat(LONG)).all()
+            && length.cmpgt(Vec3A::splat(LONG.recip())).any();
         // The usual case stays in registers.
         let (origin, direction, moved, per_unit, skipped) = if is_near {
-            (origin, ray.direction, 0.0, frame.to_unit, 0.0)
+            (origin, direction, 0.0, frame.to_unit, 0.0)
         } else {
-            let placed = Placed::from_afar(ray, frame);
-            (placed.origin, placed.direction, placed.moved, placed.per_unit, placed.skipped)
+            let Placed { origin, direction, moved, per_unit, skipped } =
+                Placed::from_afar(ray, frame);
+            (origin.as_vec3a(), direction.as_vec3a(), moved, per_unit, skipped)
         };
 
-        let (origin, direction) = (origin.as_vec3a(), direction.as_vec3a());
         let inverse = direction.abs().max(Vec3A::splat(TINY)).copysign(direction).recip();
         let widen = ((origin.abs() + 1.0) * PAD + moved) * inverse.abs();
         let offset = -origin * inverse;
-        let negative = direction.is_negative_bitmask();
         Self {
-            negative: [0, 1, 2].map(|axis| negative & (1 << axis) != 0),
+            negative: direction.is_negative_bitmask(),
             inverse,
             near_offset: offset - widen,
             far_offset: offset + widen,
@@ -244,9 +249,9 @@ impl FourSlabs {
     pub(crate) fn enter(&self, boxes: &FourBoxes, max: f32) -> (Vec4, u32) {
         let (mut near, mut far) = (Vec4::ZERO, Vec4::splat(max));
         for axis in 0..3 {
-            let negative = self.negative[axis];
-            let first = boxes.planes[axis][usize::from(negative)];
-            let last = boxes.planes[axis][usize::from(!negative)];
+            let negative = (self.negative >> axis & 1) as usize;
+            let first = boxes.planes[axis][negative];
+            let last = boxes.planes[axis][1 - negative];
             // In this order a NaN, of an invalid ray, is kept and ends as a miss.
             near = near.max(first * self.inverse[axis] + self.near_offset[axis]);
             far = far.min(last * self.inverse[axis] + self.far_offset[axis]);
@@ -254,15 +259,12 @@ impl FourSlabs {
         (near, near.cmple(far).bitmask())
     }
 
-    /// The same for a single box.
+    /// The same as [`FourSlabs::enter`] for a single box.
     #[inline]
     pub(crate) fn enter_one(&self, bounds: FrameBox, max: f32) -> Option<f32> {
-        let [mut first, mut last] = [bounds.min, bounds.max];
-        for axis in 0..3 {
-            if self.negative[axis] {
-                (first[axis], last[axis]) = (last[axis], first[axis]);
-            }
-        }
+        let negative = self.inverse.cmplt(Vec3A::ZERO);
+        let first = Vec3A::select(negative, bounds.max, bounds.min);
+        let last = Vec3A::select(negative, bounds.min, bounds.max);
         let near = (first * self.inverse + self.near_offset).max_element().max(0.0);
         let far = (last * self.inverse + self.far_offset).min_element().min(max);
         (near <= far).then_some(near)

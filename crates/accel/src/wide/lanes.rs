@@ -36,6 +36,8 @@ pub(super) trait Lanes: Copy {
     fn select(self, bits: u32, a: Self::F, b: Self::F) -> Self::F;
     /// Brings what will be read soon into the caches.
     fn prefetch<T>(self, soon: &T);
+    /// Calls `f`, compiled apart: what it needs in registers does not displace what its caller has there.
+    fn apart<R>(self, f: impl FnOnce(Self) -> R) -> R;
 }
 
 /// Three coordinates, or directions, of eight things.
@@ -175,6 +177,11 @@ impl Lanes for Scalar {
 
     #[inline(always)]
     fn prefetch<T>(self, _: &T) {}
+
+    #[inline(never)]
+    fn apart<R>(self, f: impl FnOnce(Self) -> R) -> R {
+        f(self)
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -203,16 +210,31 @@ pub(super) mod avx2 {
             found.then_some(Self(()))
         }
 
-        /// Calls `f`, which is compiled for this processor with everything inlined into it.
+        /// Calls `f`, which is compiled for this processor with everything inlined into it. Arguments go in
+        /// registers: through the memory of a closure they would be read in other pieces than written.
         #[inline(always)]
-        pub(in crate::wide) fn call<R>(self, f: impl FnOnce(Self) -> R) -> R {
+        pub(in crate::wide) fn call<A, B, C, D, R>(
+            self,
+            a: A,
+            b: B,
+            c: C,
+            d: D,
+            f: impl FnOnce(Self, A, B, C, D) -> R,
+        ) -> R {
             #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
             #[inline]
-            fn inner<R>(lanes: Avx2, f: impl FnOnce(Avx2) -> R) -> R {
-                f(lanes)
+            fn inner<A, B, C, D, R>(
+                lanes: Avx2,
+                a: A,
+                b: B,
+                c: C,
+                d: D,
+                f: impl FnOnce(Avx2, A, B, C, D) -> R,
+            ) -> R {
+                f(lanes, a, b, c, d)
             }
             // SAFETY: `self` says that the processor has these features.
-            unsafe { inner(self, f) }
+            unsafe { inner(self, a, b, c, d, f) }
         }
     }
 
@@ -322,6 +344,16 @@ pub(super) mod avx2 {
         #[inline(always)]
         fn prefetch<T>(self, soon: &T) {
             unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(soon).cast()) }
+        }
+
+        #[inline(always)]
+        fn apart<R>(self, f: impl FnOnce(Self) -> R) -> R {
+            #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+            #[inline(never)]
+            fn inner<R>(lanes: Avx2, f: impl FnOnce(Avx2) -> R) -> R {
+                f(lanes)
+            }
+            unsafe { inner(self, f) }
         }
     }
 }

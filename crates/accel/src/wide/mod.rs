@@ -5,6 +5,8 @@ mod lanes;
 mod packet;
 mod walk;
 
+use std::ops::Range;
+
 use lancer_core::geometry::{ConvexVolume, Interval, Ray};
 use lancer_core::intersector::{BeamTraversal, Hit, Intersector, Observable, Observer, Probe};
 use lancer_core::scene::{PrimitiveId, Scene};
@@ -71,16 +73,16 @@ use lanes::avx2::Avx2;
 ///                          for two differences                               =  u δ s (12 D + 114 c + 60 s)
 /// ```
 ///
-/// so with e = u δ s (16 D + 128 c + 64 s), e_Δ = 64 u s² δ and e_T = u s² (8 D + 56 c) whatever has
+/// so with q = u (16 D + 128 c), e = δ s (q + 64 u s), e_Δ = 64 u s² δ and e_T = s² q / 2 whatever has
 /// U, V, W ≥ 0 is kept by U, V, W ≥ −e, and U, V, W > e, T > e_T, |Δ| > 2 e_Δ imply a true hit. All four are
 /// turned by the sign of Δ, which is wrong only where |Δ| ≤ 48 u s² δ. Then a true hit has U and V no larger
 /// than that, which e covers, and T = t Δ no larger than 48 u s² (c + s), since no point of the triangle is
-/// farther than c + s: so T is kept from −e'_T = −(2 e_T + 64 u s³) on. The part
+/// farther than c + s: so T is kept from −e'_T = −s² (q + 64 u s) on. The part
 /// with c lets what is near be small: a teapot in a stadium is told apart from its neighbours' triangles.
 ///
 /// The slack beyond first order, and the noise of the `f64` test (2⁻²⁹ of the above in U, V, W; its own bound
 /// on t is below 60 · 2⁻⁵³ D² s / Δ) are covered because s is at least 2⁻²⁰ and D at most 17: of e_T a
-/// part of 2 u s² D is free. An origin beyond 4 is moved close to the scene, which adds its rounding to D;
+/// part of 2 u s² D is free. An origin beyond 8 is moved close to the scene, which adds its rounding to D;
 /// from beyond 16 no hit is called certain.
 pub struct Wide<'s> {
     scene: &'s Scene,
@@ -242,12 +244,39 @@ impl<'s> Wide<'s> {
         seen.all()
     }
 
+    /// The words of a leaf of triangles.
+    #[inline(always)]
+    fn words(&self, leaf: Child) -> &[f32] {
+        &self.leaves[leaf.offset()..][..1 + 10 * leaf.count()]
+    }
+
+    /// The words of a leaf that are the ids of its primitives.
+    #[inline(always)]
+    fn ids_of(&self, leaf: Child) -> Range<usize> {
+        let before = if leaf.has_spheres() { 0 } else { 1 + 9 * leaf.count() };
+        let start = leaf.offset() + before;
+        start..start + leaf.count()
+    }
+
     /// The primitives of a leaf.
     #[inline(always)]
     fn primitives(&self, leaf: Child) -> impl Iterator<Item = PrimitiveId> {
-        let before = if leaf.has_spheres() { 0 } else { 1 + 9 * leaf.count() };
-        let ids = &self.leaves[leaf.offset() + before..][..leaf.count()];
-        ids.iter().map(|id| PrimitiveId(id.to_bits()))
+        self.leaves[self.ids_of(leaf)].iter().map(|id| PrimitiveId(id.to_bits()))
+    }
+
+    #[inline(always)]
+    fn watch_leaf<O: Observer>(&self, leaf: Child, observer: &mut O) {
+        // Without a check nothing is left of it where nobody watches.
+        let ids = self.leaves.get(self.ids_of(leaf)).into_iter().flatten();
+        ids.for_each(|id| observer.primitive_test(PrimitiveId(id.to_bits())));
+    }
+
+    #[inline(always)]
+    fn watch_node<O: Observer>(&self, node: &Node, observer: &mut O) {
+        for lane in 0..WIDTH {
+            observer.region(&|| self.frame.in_scene(node.bounds(lane)));
+            observer.box_test();
+        }
     }
 
     #[inline(always)]
@@ -255,8 +284,14 @@ impl<'s> Wide<'s> {
         match self.kernel {
             #[cfg(target_arch = "x86_64")]
             Kernel::Avx2(avx2) => avx2.call(
+                self,
+                ray,
+                range,
+                observer,
                 #[inline(always)]
-                |lanes| walk::closest(lanes, self, ray, range, observer),
+                |lanes, wide, ray, range, observer| {
+                    walk::closest(lanes, wide, ray, range, observer)
+                },
             ),
             Kernel::Scalar(lanes) => walk::closest(lanes, self, ray, range, observer),
         }
@@ -272,8 +307,12 @@ impl<'s> Wide<'s> {
         match self.kernel {
             #[cfg(target_arch = "x86_64")]
             Kernel::Avx2(avx2) => avx2.call(
+                self,
+                ray,
+                range,
+                observer,
                 #[inline(always)]
-                |lanes| walk::any(lanes, self, ray, range, observer),
+                |lanes, wide, ray, range, observer| walk::any(lanes, wide, ray, range, observer),
             ),
             Kernel::Scalar(lanes) => walk::any(lanes, self, ray, range, observer),
         }
@@ -290,8 +329,12 @@ impl Intersector for Wide<'_> {
         match self.kernel {
             #[cfg(target_arch = "x86_64")]
             Kernel::Avx2(avx2) => avx2.call(
+                self,
+                rays,
+                range,
+                hits,
                 #[inline(always)]
-                |lanes| packet::closest(lanes, self, rays, range, hits),
+                |lanes, wide, rays, range, hits| packet::closest(lanes, wide, rays, range, hits),
             ),
             Kernel::Scalar(lanes) => packet::closest(lanes, self, rays, range, hits),
         }

@@ -312,7 +312,8 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
         let v = self.turned(cross(l, c, e));
         let det = self.turned(normal);
 
-        let bounds = self.bounds.of(l, words[0], c);
+        let noise = self.bounds.noise(l, c);
+        let bounds = self.bounds.of(l, words[0], noise);
         let spread = Spread {
             middle: [l.splat(self.spread.middle[0]), l.splat(self.spread.middle[1])],
             half: [l.splat(self.spread.half[0]), l.splat(self.spread.half[1])],
@@ -321,10 +322,8 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
         if met == 0 {
             return true;
         }
-        let TriangleBounds { e, e_t, e_det, e_behind } = bounds;
-        let stored =
-            [u[0], u[1], u[2], v[0], v[1], v[2], det[0], det[1], det[2], t, e, e_t, e_behind];
-        let mut rows = [[0.0; WIDTH]; 13];
+        let stored = [u[0], u[1], u[2], v[0], v[1], v[2], det[0], det[1], det[2], t, noise];
+        let mut rows = [[0.0; WIDTH]; 11];
         for (row, x) in rows.iter_mut().zip(stored) {
             *row = l.store(x);
         }
@@ -337,12 +336,7 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
                 v: [rows[3][lane], rows[4][lane], rows[5][lane]],
                 det: [rows[6][lane], rows[7][lane], rows[8][lane]],
                 t: rows[9][lane],
-                bounds: TriangleBounds {
-                    e: l.splat(rows[10][lane]),
-                    e_t: l.splat(rows[11][lane]),
-                    e_det,
-                    e_behind: l.splat(rows[12][lane]),
-                },
+                bounds: self.bounds.of(l, words[0], l.splat(rows[10][lane])),
                 id: words[1 + 9 * count + lane].to_bits(),
             };
             let mut vectors = self.vectors_that_may_meet(&triangle);
@@ -475,7 +469,7 @@ impl<F: Copy> Spread<F> {
         let (u, v, w) = (self.extremes(l, u), self.extremes(l, v), self.extremes(l, w));
         let most = l.min(u.1, l.min(v.1, w.1));
         let least = l.max(u.0, l.max(v.0, w.0));
-        let margin = l.add(bounds.e, bounds.e);
+        let margin = bounds.margin(l);
         l.at_least(most, l.sub(l.splat(0.0), margin)) | l.at_least(margin, least)
     }
 

@@ -137,7 +137,7 @@ fn the_bounds_hold() {
 
 /// What the filter says of primitive 0, if it keeps it. The frame is the world.
 fn filter_first<L: Lanes>(lanes: L, wide: &Wide, ray: &Ray) -> Option<(FourSlabs, bool, f32, f32)> {
-    let wide_ray = WideRay::new(lanes, wide, ray, Interval::POSITIVE);
+    let wide_ray = WideRay::new(lanes, wide, ray);
     let leaves = wide.nodes.iter().flat_map(|node| {
         node.children.iter().zip(0..).map(move |(child, lane)| (node, *child, lane))
     });
@@ -148,11 +148,11 @@ fn filter_first<L: Lanes>(lanes: L, wide: &Wide, ray: &Ray) -> Option<(FourSlabs
         Some((leaf, lane))
     })?;
     let words = &wide.leaves[leaf.offset()..][..1 + 10 * leaf.count()];
-    let filtered = wide_ray.filter(words, leaf.count(), lanes.splat(f32::INFINITY));
+    let filtered = wide_ray.filter(words, leaf.count(), f32::INFINITY);
     if filtered.kept >> lane & 1 == 0 {
         return None;
     }
-    let (certain, lowest, highest) = filtered.certain(lanes, wide_ray.min);
+    let (certain, lowest, highest) = filtered.certain(lanes, wide_ray.least(Interval::POSITIVE));
     let (lowest, highest) = (lanes.store(lowest)[lane], lanes.store(highest)[lane]);
     Some((wide_ray.slabs, certain >> lane & 1 != 0, lowest, highest))
 }

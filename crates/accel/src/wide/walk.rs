@@ -29,49 +29,28 @@ pub(super) const U: f32 = 0.5 * f32::EPSILON;
 pub(super) struct WideRay<L: Lanes> {
     lanes: L,
     pub(super) slabs: FourSlabs,
-    /// Which of a node's rows of planes a ray meets first on each axis: 1 for the highest coordinates.
-    near: [usize; 3],
-    inverse: [f32; 3],
-    near_offset: [f32; 3],
-    far_offset: [f32; 3],
-    origin: [f32; 3],
-    direction: [f32; 3],
-    bounds: Bounds,
-    /// A hit must be this far away to be certain.
-    pub(super) min: f32,
 }
 
 impl<L: Lanes> WideRay<L> {
     #[inline(always)]
-    pub(super) fn new(lanes: L, wide: &Wide, ray: &Ray, range: Interval) -> Self {
-        let slabs = FourSlabs::new(ray, &wide.frame);
-        let reach = 1.0 + slabs.origin.abs().max_element() + slabs.moved / U;
-        let length = slabs.direction.abs().max_element();
+    pub(super) fn new(lanes: L, wide: &Wide, ray: &Ray) -> Self {
+        Self { lanes, slabs: FourSlabs::new(ray, &wide.frame) }
+    }
+
+    /// A hit in `range` must be this far away to be certain.
+    #[inline(always)]
+    pub(super) fn least(&self, range: Interval) -> f32 {
         // From farther away the parameter's own bound in `f64` might exceed what is certain here.
-        let is_far = slabs.moved > 8.0 * f64::EPSILON as f32 * FARTHEST;
-        let min = if is_far { f32::INFINITY } else { slabs.parameter(range.min) };
-        let negative = slabs.inverse.is_negative_bitmask() as usize;
-        let near = [negative & 1, negative >> 1 & 1, negative >> 2 & 1];
-        Self {
-            lanes,
-            slabs,
-            near,
-            inverse: slabs.inverse.to_array(),
-            near_offset: slabs.near_offset.to_array(),
-            far_offset: slabs.far_offset.to_array(),
-            origin: slabs.origin.to_array(),
-            direction: slabs.direction.to_array(),
-            bounds: Bounds::new(reach, length),
-            min,
-        }
+        let is_far = self.slabs.moved > 8.0 * f64::EPSILON as f32 * FARTHEST;
+        if is_far { f32::INFINITY } else { self.slabs.parameter(range.min) }
     }
 
     /// Where the ray enters the eight boxes, and which of them before `max`, a bit per lane.
     #[inline(always)]
     fn enter(&self, node: &Node, max: f32) -> (L::F, u32) {
         let lanes = self.lanes;
-        let near = self.planes(node, 0, &self.near_offset);
-        let far = self.planes(node, 1, &self.far_offset);
+        let near = self.planes(node, 0, self.slabs.near_offset.to_array());
+        let far = self.planes(node, 1, self.slabs.far_offset.to_array());
         let first = lanes.max(lanes.max(near[0], near[1]), lanes.max(near[2], lanes.splat(0.0)));
         let last = lanes.min(lanes.min(far[0], far[1]), lanes.min(far[2], lanes.splat(max)));
         (first, lanes.at_least(last, first))
@@ -79,10 +58,12 @@ impl<L: Lanes> WideRay<L> {
 
     /// Where the ray meets the planes on its side, or (1) on the other.
     #[inline(always)]
-    fn planes(&self, node: &Node, other: usize, offset: &[f32; 3]) -> Vectors<L> {
+    fn planes(&self, node: &Node, other: u32, offset: [f32; 3]) -> Vectors<L> {
         let lanes = self.lanes;
-        let row = |axis: usize| &node.planes[axis][(self.near[axis] ^ other) & 1];
-        let (inverse, offset) = (splat3(lanes, self.inverse), splat3(lanes, *offset));
+        let row =
+            |axis: usize| &node.planes[axis][(self.slabs.negative >> axis & 1 ^ other) as usize];
+        let (inverse, offset) =
+            (splat3(lanes, self.slabs.inverse.to_array()), splat3(lanes, offset));
         [
             lanes.mul_add(lanes.load(row(0)), inverse[0], offset[0]),
             lanes.mul_add(lanes.load(row(1)), inverse[1], offset[1]),
@@ -92,21 +73,26 @@ impl<L: Lanes> WideRay<L> {
 
     /// Filters the triangles of a leaf: see [`Wide`] for the formulas and their bounds.
     #[inline(always)]
-    pub(super) fn filter(&self, words: &[f32], count: usize, max: L::F) -> Filtered<L::F> {
+    pub(super) fn filter(&self, words: &[f32], count: usize, max: f32) -> Filtered<L::F> {
         let l = self.lanes;
+        let slabs = &self.slabs;
+        let reach = 1.0 + slabs.origin.abs().max_element() + slabs.moved / U;
+        let bounds = Bounds::new(reach, slabs.direction.abs().max_element());
         let [ax, ay, az, ex, ey, ez, fx, fy, fz] = l.rows::<9>(&words[1..=9 * count], count);
         let (e, f) = ([ex, ey, ez], [fx, fy, fz]);
-        let (origin, direction) = (splat3(l, self.origin), splat3(l, self.direction));
+        let origin = splat3(l, slabs.origin.to_array());
+        let direction = splat3(l, slabs.direction.to_array());
         let c = sub3(l, [ax, ay, az], origin);
         let n = cross(l, e, f);
         let r = cross(l, c, direction);
         let (det, t) = (dot(l, n, direction), dot(l, n, c));
         let (u, v) = (dot(l, r, f), l.sub(l.splat(0.0), dot(l, r, e)));
-        Filtered::new(l, [u, v, det, t], self.bounds.of(l, words[0], c), max, (1 << count) - 1)
+        let bounds = bounds.of(l, words[0], bounds.noise(l, c));
+        Filtered::new(l, [u, v, det, t], bounds, l.splat(max), (1 << count) - 1)
     }
 }
 
-/// What the bounds are made of that a ray has, or several have: u D and δ.
+/// What the bounds are made of that a ray has, or several have: D and δ.
 pub(super) struct Bounds {
     reach: f32,
     length: f32,
@@ -115,40 +101,45 @@ pub(super) struct Bounds {
 /// The bounds of eight triangles: see [`Wide`].
 #[derive(Clone, Copy)]
 pub(super) struct TriangleBounds<F> {
-    pub(super) e: F,
-    pub(super) e_t: F,
-    pub(super) e_det: F,
+    e: F,
+    e_t: F,
+    e_det: F,
     /// e'_T
-    pub(super) e_behind: F,
+    e_behind: F,
 }
 
 impl Bounds {
     /// D is `reach`, δ is `length`.
     #[inline(always)]
     pub(super) fn new(reach: f32, length: f32) -> Self {
-        Self { reach: U * reach, length }
+        Self { reach, length }
     }
 
-    /// Of triangles with the longest edge component `s`, seen along C = `from_origin`.
+    /// q, of triangles seen along C = `from_origin`.
     #[inline(always)]
-    pub(super) fn of<L: Lanes>(
-        &self,
-        l: L,
-        s: f32,
-        from_origin: Vectors<L>,
-    ) -> TriangleBounds<L::F> {
-        let [x, y, z] = from_origin;
+    pub(super) fn noise<L: Lanes>(&self, l: L, [x, y, z]: Vectors<L>) -> L::F {
         let c = l.max(l.abs(x), l.max(l.abs(y), l.abs(z)));
-        let scale = s * self.length;
-        let (near, far) = (scale * (16.0 * self.reach + 64.0 * U * s), scale * 128.0 * U);
-        let (near_t, far_t) = (s * s * 8.0 * self.reach, s * s * 56.0 * U);
-        let e_t = l.mul_add(c, l.splat(far_t), l.splat(near_t));
+        l.mul_add(c, l.splat(128.0 * U), l.splat(16.0 * U * self.reach))
+    }
+
+    /// Of triangles with the longest edge component `s` and `noise` q.
+    #[inline(always)]
+    pub(super) fn of<L: Lanes>(&self, l: L, s: f32, noise: L::F) -> TriangleBounds<L::F> {
+        let with_size = l.add(noise, l.splat(64.0 * U * s));
         TriangleBounds {
-            e: l.mul_add(c, l.splat(far), l.splat(near)),
-            e_t,
-            e_det: l.splat(64.0 * U * s * scale),
-            e_behind: l.mul_add(e_t, l.splat(2.0), l.splat(64.0 * U * s * s * s)),
+            e: l.mul(with_size, l.splat(self.length * s)),
+            e_t: l.mul(noise, l.splat(0.5 * s * s)),
+            e_det: l.splat(self.length * s * (64.0 * U * s)),
+            e_behind: l.mul(with_size, l.splat(s * s)),
         }
+    }
+}
+
+impl<F: Copy> TriangleBounds<F> {
+    /// Twice e.
+    #[inline(always)]
+    pub(super) fn margin<L: Lanes<F = F>>(&self, l: L) -> F {
+        l.add(self.e, self.e)
     }
 }
 
@@ -178,11 +169,9 @@ impl<F: Copy> Filtered<F> {
         let det = l.abs(det);
         let inside = l.min(u, l.min(v, l.sub(l.sub(det, u), v)));
         let det_most = l.add(det, bounds.e_det);
-        let zero = l.splat(0.0);
-        let kept = l.at_least(inside, l.sub(zero, bounds.e))
-            & l.at_least(t, l.sub(zero, bounds.e_behind))
-            & l.at_least(l.mul_sub(max, det_most, t), l.sub(zero, bounds.e_t))
-            & valid;
+        let before_max = l.add(l.mul_sub(max, det_most, t), bounds.e_t);
+        let worst = l.min(l.add(inside, bounds.e), l.min(l.add(t, bounds.e_behind), before_max));
+        let kept = l.at_least(worst, l.splat(0.0)) & valid;
         Self { kept, inside, t, det, det_most, bounds }
     }
 
@@ -301,40 +290,83 @@ pub(super) fn near(entry: u64) -> f32 {
     f32::from_bits((entry >> 32) as u32)
 }
 
-/// The candidates for the closest hit, which `f64` decides on.
-struct Candidates<'s, 'r> {
-    probe: Probe<'s>,
-    ray: &'r FourSlabs,
-    /// Each with the lower end of where its hit may be.
-    list: Stack<CANDIDATES>,
+/// A ray on its way to the closest hit.
+struct Closest<'w, 's, L: Lanes> {
+    wide: &'w Wide<'s>,
+    ray: &'w Ray,
+    range: Interval,
+    in_frame: WideRay<L>,
+    /// What `f64` has decided: nothing yet, as a rule, until the walk ends.
+    probe: Option<Probe<'w>>,
+    /// Candidates for the closest hit, each with the lower end of where it may be.
+    candidates: Stack<CANDIDATES>,
     /// Nothing beyond this parameter can be the closest hit.
     max: f32,
 }
 
-impl Candidates<'_, '_> {
+impl<'w, L: Lanes> Closest<'w, '_, L> {
+    /// Sorts out the triangles of a leaf.
     #[inline(always)]
-    fn add(&mut self, primitive: PrimitiveId, lowest: f32) {
-        if self.list.length == CANDIDATES {
-            self.decide();
+    fn visit(&mut self, leaf: Child) {
+        let wide = self.wide;
+        if leaf.has_spheres() {
+            return wide.primitives(leaf).for_each(|primitive| self.test(primitive));
         }
-        self.list.push(key(lowest.max(0.0), primitive.0));
+        let (lanes, ray) = (self.in_frame.lanes, &self.in_frame);
+        let words = wide.words(leaf);
+        let filtered = ray.filter(words, leaf.count(), self.max);
+        if filtered.kept == 0 {
+            return;
+        }
+        let (certain, lowest, highest) = filtered.certain(lanes, ray.least(self.range));
+        let (lowest, highest) = (lanes.store(lowest), lanes.store(highest));
+        let ids = &words[1 + 9 * leaf.count()..];
+        let mut kept = filtered.kept;
+        while kept != 0 {
+            let lane = kept.trailing_zeros() as usize % WIDTH;
+            kept &= kept - 1;
+            let id = ids[lane].to_bits();
+            lanes.prefetch(&wide.scene.mesh.triangles[id as usize]);
+            if self.candidates.length == CANDIDATES {
+                self.decide();
+            }
+            self.candidates.push(key(lowest[lane].max(0.0), id));
+            if certain >> lane & 1 != 0 {
+                self.max = self.max.min(highest[lane]);
+            }
+        }
     }
 
     #[inline(always)]
     fn test(&mut self, primitive: PrimitiveId) {
-        if self.probe.test(primitive) {
-            self.max = self.max.min(self.ray.parameter(self.probe.range().max));
+        let probe = self.probe.get_or_insert(Probe::new(self.wide.scene, self.ray, self.range));
+        if probe.test(primitive) {
+            self.max = self.max.min(self.in_frame.slabs.parameter(probe.range().max));
         }
     }
 
-    /// Lets `f64` decide on the list. What came last is nearest more often than not.
-    #[inline(always)]
+    /// Lets `f64` decide on the candidates. What came last is nearest more often than not.
+    #[inline(never)]
     fn decide(&mut self) {
-        while let Some(candidate) = self.list.pop() {
+        while let Some(candidate) = self.candidates.pop() {
             if near(candidate) <= self.max {
                 self.test(PrimitiveId(candidate as u32));
             }
         }
+    }
+
+    /// The same at the end of the walk.
+    #[inline(always)]
+    fn answer(&mut self) -> Option<Hit> {
+        let mut max = self.max;
+        let mut probe =
+            self.probe.take().unwrap_or(Probe::new(self.wide.scene, self.ray, self.range));
+        while let Some(candidate) = self.candidates.pop() {
+            if near(candidate) <= max && probe.test(PrimitiveId(candidate as u32)) {
+                max = max.min(self.in_frame.slabs.parameter(probe.range().max));
+            }
+        }
+        probe.best()
     }
 }
 
@@ -349,28 +381,26 @@ pub(super) fn closest<L: Lanes, O: Observer>(
     if wide.nodes.is_empty() {
         return None;
     }
-    let wide_ray = WideRay::new(lanes, wide, ray, range);
-    let mut candidates = Candidates {
-        probe: Probe::new(wide.scene, ray, range),
-        ray: &wide_ray.slabs,
-        list: Stack::new(),
-        max: wide_ray.slabs.parameter(range.max),
-    };
+    let in_frame = WideRay::new(lanes, wide, ray);
+    let max = in_frame.slabs.parameter(range.max);
+    let mut walk =
+        Closest { wide, ray, range, in_frame, probe: None, candidates: Stack::new(), max };
     let mut stack = Stack::<MOST_PENDING>::new();
     let mut next = Child::node(0);
     loop {
         if next.is_leaf() {
-            for primitive in wide.primitives(next) {
-                observer.primitive_test(primitive);
-            }
-            visit_leaf(wide, &wide_ray, next, &mut candidates);
+            wide.watch_leaf(next, observer);
+            let walk = &mut walk;
+            lanes.apart(
+                #[inline(always)]
+                move |_| walk.visit(next),
+            );
         } else {
             let node = &wide.nodes[next.0 as usize];
-            for lane in 0..WIDTH {
-                observer.region(&|| wide.frame.in_scene(node.bounds(lane)));
-                observer.box_test();
-            }
-            let (near, met) = wide_ray.enter(node, candidates.max);
+            wide.watch_node(node, observer);
+            // Its line is the last of the node's, and read last.
+            lanes.prefetch(&node.children);
+            let (near, met) = walk.in_frame.enter(node, walk.max);
             if met != 0 {
                 if met & (met - 1) == 0 {
                     next = node.children[met.trailing_zeros() as usize % WIDTH];
@@ -382,40 +412,67 @@ pub(super) fn closest<L: Lanes, O: Observer>(
         }
         next = loop {
             let Some(entry) = stack.pop() else {
-                candidates.decide();
-                return candidates.probe.best();
+                if walk.candidates.length == 0 && walk.probe.is_none() {
+                    return None;
+                }
+                let walk = &mut walk;
+                return lanes.apart(
+                    #[inline(always)]
+                    move |_| walk.answer(),
+                );
             };
-            if near(entry) <= candidates.max {
+            if near(entry) <= walk.max {
                 break child(entry);
             }
         };
     }
 }
 
-#[inline(always)]
-fn visit_leaf<L: Lanes>(wide: &Wide, ray: &WideRay<L>, leaf: Child, candidates: &mut Candidates) {
-    if leaf.has_spheres() {
-        wide.primitives(leaf).for_each(|primitive| candidates.test(primitive));
-        return;
-    }
-    let count = leaf.count();
-    let words = &wide.leaves[leaf.offset()..][..1 + 10 * count];
-    let filtered = ray.filter(words, count, ray.lanes.splat(candidates.max));
-    if filtered.kept == 0 {
-        return;
-    }
-    let (certain, lowest, highest) = filtered.certain(ray.lanes, ray.min);
-    let (lowest, highest) = (ray.lanes.store(lowest), ray.lanes.store(highest));
-    let mut kept = filtered.kept;
-    while kept != 0 {
-        let lane = kept.trailing_zeros() as usize % WIDTH;
-        kept &= kept - 1;
-        let id = words[1 + 9 * count + lane].to_bits();
-        ray.lanes.prefetch(&wide.scene.mesh.triangles[id as usize]);
-        candidates.add(PrimitiveId(id), lowest[lane]);
-        if certain >> lane & 1 != 0 {
-            candidates.max = candidates.max.min(highest[lane]);
+/// A ray on its way to any hit.
+struct Any<'w, 's, L: Lanes> {
+    wide: &'w Wide<'s>,
+    ray: &'w Ray,
+    range: Interval,
+    in_frame: WideRay<L>,
+    max: f32,
+}
+
+impl<L: Lanes> Any<'_, '_, L> {
+    /// A primitive of a leaf that the ray meets, if there is one.
+    #[inline(always)]
+    fn visit(&self, leaf: Child) -> Option<PrimitiveId> {
+        let wide = self.wide;
+        let mut probe = Probe::new(wide.scene, self.ray, self.range);
+        if leaf.has_spheres() {
+            return wide.primitives(leaf).find(|&primitive| probe.test(primitive));
         }
+        let (lanes, ray) = (self.in_frame.lanes, &self.in_frame);
+        let words = wide.words(leaf);
+        let filtered = ray.filter(words, leaf.count(), self.max);
+        if filtered.kept == 0 {
+            return None;
+        }
+        let ids = &words[1 + 9 * leaf.count()..];
+        let id = |lane: usize| PrimitiveId(ids[lane].to_bits());
+        let (mut certain, _, highest) = filtered.certain(lanes, ray.least(self.range));
+        let highest = lanes.store(highest);
+        let surely_before = ray.slabs.parameter_below(self.range.max);
+        while certain != 0 {
+            let lane = certain.trailing_zeros() as usize % WIDTH;
+            certain &= certain - 1;
+            if highest[lane] < surely_before {
+                return Some(id(lane));
+            }
+        }
+        let mut kept = filtered.kept;
+        while kept != 0 {
+            let lane = kept.trailing_zeros() as usize % WIDTH;
+            kept &= kept - 1;
+            if probe.test(id(lane)) {
+                return Some(id(lane));
+            }
+        }
+        None
     }
 }
 
@@ -430,25 +487,28 @@ pub(super) fn any<L: Lanes, O: Observer>(
     if wide.nodes.is_empty() {
         return None;
     }
-    let wide_ray = WideRay::new(lanes, wide, ray, range);
-    let mut probe = Probe::new(wide.scene, ray, range);
-    let max = wide_ray.slabs.parameter(range.max);
-    let surely_before = wide_ray.slabs.parameter_below(range.max);
+    let in_frame = WideRay::new(lanes, wide, ray);
+    let max = in_frame.slabs.parameter(range.max);
+    let walk = Any { wide, ray, range, in_frame, max };
     let mut stack = Stack::<MOST_PENDING>::new();
     let mut next = Child::node(0);
     loop {
         if next.is_leaf() {
-            let found = in_the_way(wide, &wide_ray, next, max, surely_before, &mut probe, observer);
+            wide.watch_leaf(next, observer);
+            let walk = &walk;
+            let found = lanes.apart(
+                #[inline(always)]
+                move |_| walk.visit(next),
+            );
             if found.is_some() {
                 return found;
             }
         } else {
             let node = &wide.nodes[next.0 as usize];
-            for lane in 0..WIDTH {
-                observer.region(&|| wide.frame.in_scene(node.bounds(lane)));
-                observer.box_test();
-            }
-            let (_, mut met) = wide_ray.enter(node, max);
+            wide.watch_node(node, observer);
+            // Its line is the last of the node's, and read last.
+            lanes.prefetch(&node.children);
+            let (_, mut met) = walk.in_frame.enter(node, max);
             if met != 0 {
                 // The last one does not pass through the stack.
                 while met & (met - 1) != 0 {
@@ -462,48 +522,4 @@ pub(super) fn any<L: Lanes, O: Observer>(
         }
         next = child(stack.pop()?);
     }
-}
-
-/// A primitive of a leaf that the ray meets, if there is one.
-#[inline(always)]
-fn in_the_way<L: Lanes, O: Observer>(
-    wide: &Wide,
-    ray: &WideRay<L>,
-    leaf: Child,
-    max: f32,
-    surely_before: f32,
-    probe: &mut Probe,
-    observer: &mut O,
-) -> Option<PrimitiveId> {
-    for primitive in wide.primitives(leaf) {
-        observer.primitive_test(primitive);
-    }
-    if leaf.has_spheres() {
-        return wide.primitives(leaf).find(|&primitive| probe.test(primitive));
-    }
-    let count = leaf.count();
-    let words = &wide.leaves[leaf.offset()..][..1 + 10 * count];
-    let filtered = ray.filter(words, count, ray.lanes.splat(max));
-    if filtered.kept == 0 {
-        return None;
-    }
-    let id = |lane: usize| PrimitiveId(words[1 + 9 * count + lane].to_bits());
-    let (mut certain, _, highest) = filtered.certain(ray.lanes, ray.min);
-    let highest = ray.lanes.store(highest);
-    while certain != 0 {
-        let lane = certain.trailing_zeros() as usize % WIDTH;
-        certain &= certain - 1;
-        if highest[lane] < surely_before {
-            return Some(id(lane));
-        }
-    }
-    let mut kept = filtered.kept;
-    while kept != 0 {
-        let lane = kept.trailing_zeros() as usize % WIDTH;
-        kept &= kept - 1;
-        if probe.test(id(lane)) {
-            return Some(id(lane));
-        }
-    }
-    None
 }
