@@ -233,31 +233,37 @@ impl<'s> Probe<'s> {
     /// Tests one primitive and keeps it if it wins. Returns whether it was met at all.
     #[inline(always)]
     pub fn test(&mut self, primitive: PrimitiveId) -> bool {
-        let Some((t, barycentric)) = self.intersect(primitive) else { return false };
+        let index = primitive.0 as usize;
+        let triangles = self.scene.mesh.triangles.len();
+        if index < triangles {
+            return self.test_triangle(primitive, self.scene.mesh.corners(index));
+        }
+        // The sphere's own range test would hide ties at the far end.
+        let range = Interval { min: self.range.min, max: f64::INFINITY };
+        let t = self.scene.spheres[index - triangles].shape.intersect(self.ray, range);
+        t.is_some_and(|t| self.keep(Hit { t, primitive, barycentric: DVec3::ZERO }))
+    }
+
+    /// The same for a triangle whose corners are known.
+    #[inline(always)]
+    pub fn test_triangle(&mut self, primitive: PrimitiveId, corners: [DVec3; 3]) -> bool {
+        let shear = self.shear.get_or_insert_with(|| Shear::new(self.ray.direction));
+        intersect_triangle(corners, self.ray, shear)
+            .is_some_and(|hit| self.keep(Hit { t: hit.t, primitive, barycentric: hit.barycentric }))
+    }
+
+    /// Keeps a hit if it wins.
+    #[inline(always)]
+    fn keep(&mut self, hit: Hit) -> bool {
+        let Hit { t, primitive, .. } = hit;
         let wins = t < self.range.max
             || self.best.is_some_and(|best| t == best.t && primitive < best.primitive);
         if t > self.range.min && wins {
             self.range.max = t;
-            self.best = Some(Hit { t, primitive, barycentric });
+            self.best = Some(hit);
             return true;
         }
         false
-    }
-
-    #[inline(always)]
-    fn intersect(&mut self, primitive: PrimitiveId) -> Option<(f64, DVec3)> {
-        let index = primitive.0 as usize;
-        let triangles = self.scene.mesh.triangles.len();
-        if index < triangles {
-            let corners = self.scene.mesh.corners(index);
-            let shear = self.shear.get_or_insert_with(|| Shear::new(self.ray.direction));
-            intersect_triangle(corners, self.ray, shear).map(|hit| (hit.t, hit.barycentric))
-        } else {
-            // The sphere's own range test would hide ties at the far end from `test`.
-            let range = Interval { min: self.range.min, max: f64::INFINITY };
-            let t = self.scene.spheres[index - triangles].shape.intersect(self.ray, range)?;
-            Some((t, DVec3::ZERO))
-        }
     }
 
     /// The interval in which a hit still counts: it ends at the closest one so far.

@@ -5,7 +5,7 @@ use lancer_core::scene::{PrimitiveId, Scene};
 use rayon::prelude::*;
 use smallvec::SmallVec;
 
-use super::{Child, Node, UNIT};
+use super::{Child, Node, RECORD, UNIT, word_of};
 use crate::binary_tree::{BinaryTree, TreeNode};
 use crate::four_boxes::FrameBox;
 
@@ -155,8 +155,8 @@ pub(super) fn collapse(tree: &BinaryTree) -> Collapsed {
                 let has_spheres = has_spheres(tree.scene, primitives);
                 nodes[index].children[lane] = Child::leaf(words, primitives.len(), has_spheres);
                 leaves.push((words, primitives));
-                let rows = if has_spheres { 0 } else { 1 + 9 * primitives.len() };
-                words += (rows + primitives.len()).next_multiple_of(UNIT);
+                let per_primitive = if has_spheres { 1 } else { 9 + RECORD };
+                words += (1 + per_primitive * primitives.len()).next_multiple_of(UNIT);
             } else {
                 pending.push((child, Some((index, lane))));
             }
@@ -167,7 +167,8 @@ pub(super) fn collapse(tree: &BinaryTree) -> Collapsed {
 
 /// The words of all leaves.
 fn fill(tree: &BinaryTree, leaves: &[(usize, &[PrimitiveId])], count: usize) -> Vec<f32> {
-    let mut words = vec![0.0; count];
+    // Eight numbers are read at a time, whose-ever they are.
+    let mut words = vec![0.0; count + WIDTH];
     let mut parts = Vec::new();
     let mut rest = words.as_mut_slice();
     for part in leaves.chunks(LEAVES).rev() {
@@ -212,28 +213,29 @@ fn has_spheres(scene: &Scene, primitives: &[PrimitiveId]) -> bool {
 
 /// Writes a leaf: see [`super::Wide`] for its words.
 fn fill_leaf(tree: &BinaryTree, primitives: &[PrimitiveId], words: &mut [f32]) {
+    let (longest, words) = words.split_first_mut().expect("a leaf has words");
+    *longest = super::SHORTEST;
+    if has_spheres(tree.scene, primitives) {
+        for (word, id) in words.iter_mut().zip(primitives) {
+            *word = word_of(id.0);
+        }
+        return;
+    }
+    let (mesh, frame) = (&tree.scene.mesh, &tree.frame);
     let count = primitives.len();
-    let mut ids = words;
-    if !has_spheres(tree.scene, primitives) {
-        let (rows, rest) = ids.split_at_mut(1 + 9 * count);
-        ids = rest;
-        let mut longest = super::SHORTEST;
-        for (lane, id) in primitives.iter().enumerate() {
-            let [a, b, c] = tree.scene.mesh.corners(id.0 as usize);
-            // Edges are rounded in proportion to their own length, not to their place.
-            let frame = &tree.frame;
-            let parts = [frame.point(a), frame.vector(b - a), frame.vector(c - a)];
-            for (k, part) in parts.into_iter().flat_map(|part| part.to_array()).enumerate() {
-                rows[1 + k * count + lane] = part as f32;
-                if k >= 3 {
-                    longest = longest.max((part as f32).abs());
-                }
+    let (rows, records) = words.split_at_mut(9 * count);
+    for (lane, (id, record)) in primitives.iter().zip(records.chunks_mut(RECORD)).enumerate() {
+        let [a, b, c] = mesh.corners(id.0 as usize);
+        // Edges are rounded in proportion to their own length, not to their place.
+        let parts = [frame.point(a), frame.vector(a - b), frame.vector(c - a)];
+        for (k, part) in parts.into_iter().flat_map(|part| part.to_array()).enumerate() {
+            rows[k * count + lane] = part as f32;
+            if k >= 3 {
+                *longest = longest.max((part as f32).abs());
             }
         }
-        rows[0] = longest;
-    }
-    for (word, id) in ids.iter_mut().zip(primitives) {
-        *word = f32::from_bits(id.0);
+        let [a, b, c] = mesh.triangles[id.0 as usize].vertices;
+        record.copy_from_slice(&[id.0, a, b, c].map(word_of));
     }
 }
 

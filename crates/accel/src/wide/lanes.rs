@@ -10,7 +10,7 @@ pub(super) trait Lanes: Copy {
 
     fn splat(self, x: f32) -> Self::F;
     fn load(self, x: &[f32; 8]) -> Self::F;
-    /// `N` rows of `n` ≤ 8 numbers that stand one after another; the other lanes are 0.
+    /// `N` rows of `n` ≤ 8 numbers that stand one after another; what follows is in the other lanes.
     fn rows<const N: usize>(self, x: &[f32], n: usize) -> [Self::F; N];
     fn store(self, x: Self::F) -> [f32; 8];
     fn add(self, a: Self::F, b: Self::F) -> Self::F;
@@ -98,11 +98,7 @@ impl Lanes for Scalar {
 
     #[inline(always)]
     fn rows<const N: usize>(self, x: &[f32], n: usize) -> [[f32; 8]; N] {
-        std::array::from_fn(|row| {
-            let mut lanes = [0.0; 8];
-            lanes[..n].copy_from_slice(&x[row * n..][..n]);
-            lanes
-        })
+        std::array::from_fn(|row| std::array::from_fn(|lane| x[row * n + lane]))
     }
 
     #[inline(always)]
@@ -238,9 +234,6 @@ pub(super) mod avx2 {
         }
     }
 
-    /// `MASKS[8 − n..]` begins with n lanes to be loaded.
-    static MASKS: [i32; 16] = [-1, -1, -1, -1, -1, -1, -1, -1, 0, 0, 0, 0, 0, 0, 0, 0];
-
     // SAFETY of all blocks below: see the module's documentation.
     impl Lanes for Avx2 {
         type F = __m256;
@@ -257,11 +250,8 @@ pub(super) mod avx2 {
 
         #[inline(always)]
         fn rows<const N: usize>(self, x: &[f32], n: usize) -> [__m256; N] {
-            assert!(n <= 8 && x.len() >= N * n);
-            unsafe {
-                let mask = _mm256_loadu_si256(MASKS.as_ptr().add(8 - n).cast());
-                std::array::from_fn(|row| _mm256_maskload_ps(x.as_ptr().add(row * n), mask))
-            }
+            assert!(x.len() >= (N - 1) * n + 8);
+            unsafe { std::array::from_fn(|row| _mm256_loadu_ps(x.as_ptr().add(row * n))) }
         }
 
         #[inline(always)]

@@ -5,8 +5,6 @@ mod lanes;
 mod packet;
 mod walk;
 
-use std::ops::Range;
-
 use lancer_core::geometry::{ConvexVolume, Interval, Ray};
 use lancer_core::intersector::{BeamTraversal, Hit, Intersector, Observable, Observer, Probe};
 use lancer_core::scene::{PrimitiveId, Scene};
@@ -29,9 +27,9 @@ use lanes::avx2::Avx2;
 ///                     child [8]     a node, or a leaf and its number of primitives
 /// leaf, words of 4    longest edge component s,
 ///                     a.x [n] a.y [n] a.z [n]   one corner
-///                     e.x [n] e.y [n] e.z [n]   to the second
-///                     f.x [n] f.y [n] f.z [n]   to the third
-///                     id [n]                    42 bytes a triangle at n = 8
+///                     e.x [n] e.y [n] e.z [n]   from the second to it
+///                     f.x [n] f.y [n] f.z [n]   from it to the third
+///                     (id, corners [3]) [n]     what f64 will read; 53 bytes a triangle at n = 8
 /// ```
 ///
 /// All coordinates are those of the scene's own frame, [−1, 1]³: `f32` keeps its digits wherever the scene
@@ -51,11 +49,11 @@ use lanes::avx2::Avx2;
 ///
 /// # The bounds
 ///
-/// With C = a − o, N = e × f, R = C × d the ray o + t d meets the plane at t = T / Δ with the weights U / Δ
+/// With C = a − o, N = f × e, R = C × d the ray o + t d meets the plane at t = T / Δ with the weights U / Δ
 /// and V / Δ (Möller and Trumbore), where
 ///
 /// ```text
-/// Δ = N·d     T = N·C     U = R·f     V = −R·e     W = Δ − U − V
+/// Δ = N·d     T = N·C     U = R·f     V = R·e     W = Δ − U − V
 /// ```
 ///
 /// Let u = 2⁻²⁴, D = 1 + |o|, c = |C|, δ = |d| and s = the longest edge component, all in the maximum
@@ -98,6 +96,25 @@ pub struct Wide<'s> {
 const SHORTEST: f32 = 1.0 / (1 << 20) as f32;
 /// Leaves begin at multiples of this many words.
 const UNIT: usize = 4;
+/// Words of a triangle's id and corners.
+const RECORD: usize = 4;
+
+/// An integer among the words of a leaf. Where it is read as a number, for the sake of its neighbours, it is
+/// one of at least 2: computing with denormal ones is slow.
+///
+/// # Panics
+/// If it is 2³⁰ or more.
+fn word_of(integer: u32) -> f32 {
+    assert!(integer < TAG, "`wide` takes no more than 2³⁰ triangles and corners");
+    f32::from_bits(TAG | integer)
+}
+
+#[inline(always)]
+fn integer_of(word: f32) -> u32 {
+    word.to_bits() & (TAG - 1)
+}
+
+const TAG: u32 = 1 << 30;
 
 /// What computes with eight lanes.
 #[derive(Clone, Copy, Debug)]
@@ -244,31 +261,44 @@ impl<'s> Wide<'s> {
         seen.all()
     }
 
-    /// The words of a leaf of triangles.
+    /// Where the record of a leaf's triangle begins, among all words.
     #[inline(always)]
-    fn words(&self, leaf: Child) -> &[f32] {
-        &self.leaves[leaf.offset()..][..1 + 10 * leaf.count()]
+    fn record(leaf: Child, lane: usize) -> u32 {
+        (leaf.offset() + 1 + 9 * leaf.count() + RECORD * lane) as u32
     }
 
-    /// The words of a leaf that are the ids of its primitives.
+    /// A triangle by its record, and its corners' indices.
     #[inline(always)]
-    fn ids_of(&self, leaf: Child) -> Range<usize> {
-        let before = if leaf.has_spheres() { 0 } else { 1 + 9 * leaf.count() };
-        let start = leaf.offset() + before;
-        start..start + leaf.count()
+    fn triangle(&self, record: u32) -> (PrimitiveId, [usize; 3]) {
+        let words = &self.leaves[record as usize..][..RECORD];
+        let [id, a, b, c] = [0, 1, 2, 3].map(|k| integer_of(words[k]));
+        (PrimitiveId(id), [a, b, c].map(|index| index as usize))
+    }
+
+    /// Lets `f64` decide on a triangle.
+    #[inline(always)]
+    fn test(&self, probe: &mut Probe, record: u32) -> bool {
+        let (id, corners) = self.triangle(record);
+        probe.test_triangle(id, corners.map(|corner| self.scene.mesh.positions[corner]))
     }
 
     /// The primitives of a leaf.
     #[inline(always)]
     fn primitives(&self, leaf: Child) -> impl Iterator<Item = PrimitiveId> {
-        self.leaves[self.ids_of(leaf)].iter().map(|id| PrimitiveId(id.to_bits()))
+        (0..leaf.count()).map(move |lane| {
+            let word = if leaf.has_spheres() {
+                leaf.offset() + 1 + lane
+            } else {
+                Self::record(leaf, lane) as usize
+            };
+            // Without a check nothing is left of an observer's loop where nobody watches.
+            PrimitiveId(self.leaves.get(word).map_or(u32::MAX, |&word| integer_of(word)))
+        })
     }
 
     #[inline(always)]
     fn watch_leaf<O: Observer>(&self, leaf: Child, observer: &mut O) {
-        // Without a check nothing is left of it where nobody watches.
-        let ids = self.leaves.get(self.ids_of(leaf)).into_iter().flatten();
-        ids.for_each(|id| observer.primitive_test(PrimitiveId(id.to_bits())));
+        self.primitives(leaf).for_each(|primitive| observer.primitive_test(primitive));
     }
 
     #[inline(always)]

@@ -3,7 +3,6 @@
 use glam::DVec2;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::intersector::{Hit, Probe};
-use lancer_core::scene::PrimitiveId;
 use smallvec::SmallVec;
 
 use super::collapse::WIDTH;
@@ -59,8 +58,8 @@ pub(super) fn closest<L: Lanes>(
 ///
 /// # Which triangles
 ///
-/// U, V and Δ of [`Wide`] are linear in the direction: U = d·(f × C), V = d·(C × e), Δ = d·N, and T is the
-/// same for all rays. f × C and C × e are off by u s (2 D + 8 c), as R there by u δ (2 D + 8 c), so the same
+/// U, V and Δ of [`Wide`] are linear in the direction: U = d·(f × C), V = d·(e × C), Δ = d·N, and T is the
+/// same for all rays. f × C and e × C are off by u s (2 D + 8 c), as R there by u δ (2 D + 8 c), so the same
 /// bounds hold, and the same comparisons: first for the range of all slopes, eight triangles at a time, then
 /// for what is left eight rays at a time.
 pub(super) struct Packet<'p, 's, L: Lanes> {
@@ -299,17 +298,17 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
         self.spent += 2;
         let l = self.lanes;
         let count = leaf.count();
-        let words = &self.wide.leaves[leaf.offset()..][..1 + 10 * count];
-        let rows = l.rows::<9>(&words[1..=9 * count], count);
+        let words = &self.wide.leaves[leaf.offset()..];
+        let rows = l.rows::<9>(&words[1..], count);
         let [p, q, w] = self.axes;
         let a = [rows[p], rows[q], rows[w]];
         let (e, f) =
             ([rows[3 + p], rows[3 + q], rows[3 + w]], [rows[6 + p], rows[6 + q], rows[6 + w]]);
         let c = sub3(l, a, splat3(l, [self.origin[p], self.origin[q], self.origin[w]]));
-        let normal = cross(l, e, f);
+        let normal = cross(l, f, e);
         let t = dot(l, normal, c);
         let u = self.turned(cross(l, f, c));
-        let v = self.turned(cross(l, c, e));
+        let v = self.turned(cross(l, e, c));
         let det = self.turned(normal);
 
         let noise = self.bounds.noise(l, c);
@@ -337,7 +336,7 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
                 det: [rows[6][lane], rows[7][lane], rows[8][lane]],
                 t: rows[9][lane],
                 bounds: self.bounds.of(l, words[0], l.splat(rows[10][lane])),
-                id: words[1 + 9 * count + lane].to_bits(),
+                record: Wide::record(leaf, lane),
             };
             let mut vectors = self.vectors_that_may_meet(&triangle);
             while vectors != 0 {
@@ -409,13 +408,13 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
         while nearer_left != 0 {
             let lane = nearer_left.trailing_zeros() as usize % WIDTH;
             nearer_left &= nearer_left - 1;
-            self.best[vector][lane] = triangle.id;
+            self.best[vector][lane] = triangle.record;
         }
         let mut doubtful = filtered.kept & !nearer;
         while doubtful != 0 {
             let lane = doubtful.trailing_zeros() as usize % WIDTH;
             doubtful &= doubtful - 1;
-            self.doubts.push(((vector * WIDTH + lane) as u64) << 32 | u64::from(triangle.id));
+            self.doubts.push(((vector * WIDTH + lane) as u64) << 32 | u64::from(triangle.record));
         }
         shorter != 0
     }
@@ -429,10 +428,10 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
             let mut probe = Probe::new(self.wide.scene, ray, self.range);
             let best = self.best[k / WIDTH][k % WIDTH];
             if best != NONE {
-                probe.test(PrimitiveId(best));
+                self.wide.test(&mut probe, best);
             }
             while let Some(doubt) = doubts.next_if(|&&doubt| doubt >> 32 == k as u64) {
-                probe.test(PrimitiveId(*doubt as u32));
+                self.wide.test(&mut probe, *doubt as u32);
             }
             *hit = probe.best();
         }
@@ -489,5 +488,5 @@ struct Triangle<F> {
     det: [f32; 3],
     t: f32,
     bounds: TriangleBounds<F>,
-    id: u32,
+    record: u32,
 }

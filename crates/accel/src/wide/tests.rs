@@ -46,8 +46,8 @@ fn a_validation_finds_what_is_wrong() {
     assert!(small.contains("sticks out"), "{small}");
     let twice = broken(&|wide| {
         let (_, leaf) = leaf(wide);
-        let ids = leaf.offset() + 1 + 9 * leaf.count();
-        wide.leaves[ids] = wide.leaves[ids + 1];
+        let [first, second] = [0, 1].map(|lane| Wide::record(leaf, lane) as usize);
+        wide.leaves[first] = wide.leaves[second];
     });
     assert!(twice.ends_with("is in two leaves"), "{twice}");
     let missing = broken(&|wide| {
@@ -57,13 +57,13 @@ fn a_validation_finds_what_is_wrong() {
     assert!(missing.ends_with("is in no leaf"), "{missing}");
 }
 
-/// Nodes and leaves are well filled: n triangles take fewer than n / 4 nodes, and 60 bytes each.
+/// Nodes and leaves are well filled: n triangles take fewer than n / 4 nodes, and 70 bytes each.
 #[test]
 fn a_tree_is_small() {
     let scene = Scene::of_mesh(icosphere(5));
     let wide = Wide::build(&scene);
     let count = scene.mesh.triangles.len();
-    assert!(wide.nodes.len() < count / 4 && wide.memory() < 60 * count, "{}", wide.memory());
+    assert!(wide.nodes.len() < count / 4 && wide.memory() < 70 * count, "{}", wide.memory());
 }
 
 /// The proof in the documentation, tried: what `f64` meets the filter keeps; what is certain `f64` meets;
@@ -147,7 +147,7 @@ fn filter_first<L: Lanes>(lanes: L, wide: &Wide, ray: &Ray) -> Option<(FourSlabs
         let lane = wide.primitives(leaf).position(|id| id == PrimitiveId(0))?;
         Some((leaf, lane))
     })?;
-    let words = &wide.leaves[leaf.offset()..][..1 + 10 * leaf.count()];
+    let words = &wide.leaves[leaf.offset()..];
     let filtered = wide_ray.filter(words, leaf.count(), f32::INFINITY);
     if filtered.kept >> lane & 1 == 0 {
         return None;

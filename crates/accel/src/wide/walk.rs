@@ -71,22 +71,22 @@ impl<L: Lanes> WideRay<L> {
         ]
     }
 
-    /// Filters the triangles of a leaf: see [`Wide`] for the formulas and their bounds.
+    /// Filters the triangles of a leaf, whose words come first: see [`Wide`] for the formulas and their bounds.
     #[inline(always)]
     pub(super) fn filter(&self, words: &[f32], count: usize, max: f32) -> Filtered<L::F> {
         let l = self.lanes;
         let slabs = &self.slabs;
         let reach = 1.0 + slabs.origin.abs().max_element() + slabs.moved / U;
         let bounds = Bounds::new(reach, slabs.direction.abs().max_element());
-        let [ax, ay, az, ex, ey, ez, fx, fy, fz] = l.rows::<9>(&words[1..=9 * count], count);
+        let [ax, ay, az, ex, ey, ez, fx, fy, fz] = l.rows::<9>(&words[1..], count);
         let (e, f) = ([ex, ey, ez], [fx, fy, fz]);
         let origin = splat3(l, slabs.origin.to_array());
         let direction = splat3(l, slabs.direction.to_array());
         let c = sub3(l, [ax, ay, az], origin);
-        let n = cross(l, e, f);
+        let n = cross(l, f, e);
         let r = cross(l, c, direction);
         let (det, t) = (dot(l, n, direction), dot(l, n, c));
-        let (u, v) = (dot(l, r, f), l.sub(l.splat(0.0), dot(l, r, e)));
+        let (u, v) = (dot(l, r, f), dot(l, r, e));
         let bounds = bounds.of(l, words[0], bounds.noise(l, c));
         Filtered::new(l, [u, v, det, t], bounds, l.splat(max), (1 << count) - 1)
     }
@@ -310,27 +310,28 @@ impl<'w, L: Lanes> Closest<'w, '_, L> {
     fn visit(&mut self, leaf: Child) {
         let wide = self.wide;
         if leaf.has_spheres() {
-            return wide.primitives(leaf).for_each(|primitive| self.test(primitive));
+            return wide.primitives(leaf).for_each(|sphere| self.test(|probe| probe.test(sphere)));
         }
         let (lanes, ray) = (self.in_frame.lanes, &self.in_frame);
-        let words = wide.words(leaf);
+        let words = &wide.leaves[leaf.offset()..];
         let filtered = ray.filter(words, leaf.count(), self.max);
         if filtered.kept == 0 {
             return;
         }
         let (certain, lowest, highest) = filtered.certain(lanes, ray.least(self.range));
         let (lowest, highest) = (lanes.store(lowest), lanes.store(highest));
-        let ids = &words[1 + 9 * leaf.count()..];
         let mut kept = filtered.kept;
         while kept != 0 {
             let lane = kept.trailing_zeros() as usize % WIDTH;
             kept &= kept - 1;
-            let id = ids[lane].to_bits();
-            lanes.prefetch(&wide.scene.mesh.triangles[id as usize]);
+            let record = Wide::record(leaf, lane);
+            for corner in wide.triangle(record).1 {
+                lanes.prefetch(&wide.scene.mesh.positions[corner]);
+            }
             if self.candidates.length == CANDIDATES {
                 self.decide();
             }
-            self.candidates.push(key(lowest[lane].max(0.0), id));
+            self.candidates.push(key(lowest[lane].max(0.0), record));
             if certain >> lane & 1 != 0 {
                 self.max = self.max.min(highest[lane]);
             }
@@ -338,9 +339,9 @@ impl<'w, L: Lanes> Closest<'w, '_, L> {
     }
 
     #[inline(always)]
-    fn test(&mut self, primitive: PrimitiveId) {
+    fn test(&mut self, test: impl FnOnce(&mut Probe) -> bool) {
         let probe = self.probe.get_or_insert(Probe::new(self.wide.scene, self.ray, self.range));
-        if probe.test(primitive) {
+        if test(probe) {
             self.max = self.max.min(self.in_frame.slabs.parameter(probe.range().max));
         }
     }
@@ -350,7 +351,8 @@ impl<'w, L: Lanes> Closest<'w, '_, L> {
     fn decide(&mut self) {
         while let Some(candidate) = self.candidates.pop() {
             if near(candidate) <= self.max {
-                self.test(PrimitiveId(candidate as u32));
+                let wide = self.wide;
+                self.test(|probe| wide.test(probe, candidate as u32));
             }
         }
     }
@@ -362,7 +364,7 @@ impl<'w, L: Lanes> Closest<'w, '_, L> {
         let mut probe =
             self.probe.take().unwrap_or(Probe::new(self.wide.scene, self.ray, self.range));
         while let Some(candidate) = self.candidates.pop() {
-            if near(candidate) <= max && probe.test(PrimitiveId(candidate as u32)) {
+            if near(candidate) <= max && self.wide.test(&mut probe, candidate as u32) {
                 max = max.min(self.in_frame.slabs.parameter(probe.range().max));
             }
         }
@@ -447,13 +449,12 @@ impl<L: Lanes> Any<'_, '_, L> {
             return wide.primitives(leaf).find(|&primitive| probe.test(primitive));
         }
         let (lanes, ray) = (self.in_frame.lanes, &self.in_frame);
-        let words = wide.words(leaf);
+        let words = &wide.leaves[leaf.offset()..];
         let filtered = ray.filter(words, leaf.count(), self.max);
         if filtered.kept == 0 {
             return None;
         }
-        let ids = &words[1 + 9 * leaf.count()..];
-        let id = |lane: usize| PrimitiveId(ids[lane].to_bits());
+        let record = |lane: usize| Wide::record(leaf, lane);
         let (mut certain, _, highest) = filtered.certain(lanes, ray.least(self.range));
         let highest = lanes.store(highest);
         let surely_before = ray.slabs.parameter_below(self.range.max);
@@ -461,15 +462,15 @@ impl<L: Lanes> Any<'_, '_, L> {
             let lane = certain.trailing_zeros() as usize % WIDTH;
             certain &= certain - 1;
             if highest[lane] < surely_before {
-                return Some(id(lane));
+                return Some(wide.triangle(record(lane)).0);
             }
         }
         let mut kept = filtered.kept;
         while kept != 0 {
             let lane = kept.trailing_zeros() as usize % WIDTH;
             kept &= kept - 1;
-            if probe.test(id(lane)) {
-                return Some(id(lane));
+            if wide.test(&mut probe, record(lane)) {
+                return Some(wide.triangle(record(lane)).0);
             }
         }
         None
