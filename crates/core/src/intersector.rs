@@ -4,7 +4,9 @@
 
 use glam::DVec3;
 
-use crate::geometry::{Bounds3, ConvexVolume, Interval, Ray, Shear, intersect_triangle};
+use crate::geometry::{
+    Bounds3, ConvexVolume, Interval, Ray, Shear, intersect_triangle, solve_triangle,
+};
 use crate::scene::{PrimitiveId, Scene};
 
 /// The closest primitive that a ray meets.
@@ -252,9 +254,18 @@ impl<'s> Probe<'s> {
             .is_some_and(|hit| self.keep(Hit { t: hit.t, primitive, barycentric: hit.barycentric }))
     }
 
-    /// Keeps a hit if it wins.
+    /// The same for a triangle that the ray is known to meet, if not where.
     #[inline(always)]
-    fn keep(&mut self, hit: Hit) -> bool {
+    pub fn solve_triangle(&mut self, primitive: PrimitiveId, corners: [DVec3; 3]) -> bool {
+        let shear = self.shear.get_or_insert_with(|| Shear::new(self.ray.direction));
+        let corners = corners.map(|corner| (corner - self.ray.origin).to_array());
+        let (t, barycentric) = solve_triangle(corners, shear);
+        self.keep(Hit { t, primitive, barycentric: barycentric.into() })
+    }
+
+    /// Keeps a hit that the ray is known to have if it lies in the range, and wins. Returns whether it does.
+    #[inline(always)]
+    pub fn keep(&mut self, hit: Hit) -> bool {
         let Hit { t, primitive, .. } = hit;
         let wins = t < self.range.max
             || self.best.is_some_and(|best| t == best.t && primitive < best.primitive);

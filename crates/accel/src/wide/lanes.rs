@@ -1,12 +1,18 @@
-//! Eight `f32` at once: by AVX2 where the processor has it, and by a scalar twin everywhere.
+//! Eight `f32`, or four `f64`, at once: by AVX2 where the processor has it, and by a scalar twin everywhere.
 
-/// A way to compute with eight numbers at once.
+use std::ops::{Add, Mul, Sub};
+
+use lancer_core::geometry::Real;
+
+/// A way to compute with eight numbers, or four, at once.
 ///
 /// The value says that the processor can do it. The twins may round differently (`mul_add` rounds once or
 /// twice): the bounds of the tests hold for both, and so do their answers.
 pub(super) trait Lanes: Copy {
     /// Eight numbers.
     type F: Copy;
+    /// Four `f64`.
+    type D: Real;
 
     fn splat(self, x: f32) -> Self::F;
     fn load(self, x: &[f32; 8]) -> Self::F;
@@ -34,6 +40,10 @@ pub(super) trait Lanes: Copy {
     fn above(self, a: Self::F, b: Self::F) -> u32;
     /// `a` in the lanes whose bit is set, `b` in the others.
     fn select(self, bits: u32, a: Self::F, b: Self::F) -> Self::F;
+    fn four(self, x: [f64; 4]) -> Self::D;
+    fn numbers(self, x: Self::D) -> [f64; 4];
+    /// Eight `f64`, rounded.
+    fn narrow(self, low: Self::D, high: Self::D) -> Self::F;
     /// Brings what will be read soon into the caches.
     fn prefetch<T>(self, soon: &T);
     /// Calls `f`, compiled apart: what it needs in registers does not displace what its caller has there.
@@ -69,13 +79,63 @@ pub(super) fn dot<L: Lanes>(l: L, a: Vectors<L>, b: Vectors<L>) -> L::F {
     l.mul_add(a[0], b[0], l.mul_add(a[1], b[1], l.mul(a[2], b[2])))
 }
 
+/// The smallest of eight numbers, none of which is NaN.
+#[inline(always)]
+pub(super) fn least<L: Lanes>(l: L, x: L::F) -> f32 {
+    let x = l.store(x);
+    let four: [f32; 4] = each(|k| if x[k] < x[k + 4] { x[k] } else { x[k + 4] });
+    let [a, b]: [f32; 2] = each(|k| if four[k] < four[k + 2] { four[k] } else { four[k + 2] });
+    if a < b { a } else { b }
+}
+
+/// The largest.
+#[inline(always)]
+pub(super) fn most<L: Lanes>(l: L, x: L::F) -> f32 {
+    -least(l, l.sub(l.splat(0.0), x))
+}
+
 /// One lane after the other. The compiler makes of it what the target always has: SSE2, NEON.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scalar;
 
 #[inline(always)]
-fn each(f: impl FnMut(usize) -> f32) -> [f32; 8] {
+fn each<T, const N: usize>(f: impl FnMut(usize) -> T) -> [T; N] {
     std::array::from_fn(f)
+}
+
+/// Four `f64`, one after the other.
+#[derive(Clone, Copy)]
+pub(super) struct Four([f64; 4]);
+
+impl Add for Four {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, b: Self) -> Self {
+        Self(each(|k| self.0[k] + b.0[k]))
+    }
+}
+
+impl Sub for Four {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, b: Self) -> Self {
+        Self(each(|k| self.0[k] - b.0[k]))
+    }
+}
+
+impl Mul for Four {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, b: Self) -> Self {
+        Self(each(|k| self.0[k] * b.0[k]))
+    }
+}
+
+impl Real for Four {
+    #[inline(always)]
+    fn recip(self) -> Self {
+        Self(self.0.map(|x| 1.0 / x))
+    }
 }
 
 #[inline(always)]
@@ -85,6 +145,7 @@ fn bits(f: impl Fn(usize) -> bool) -> u32 {
 
 impl Lanes for Scalar {
     type F = [f32; 8];
+    type D = Four;
 
     #[inline(always)]
     fn splat(self, x: f32) -> [f32; 8] {
@@ -172,6 +233,21 @@ impl Lanes for Scalar {
     }
 
     #[inline(always)]
+    fn four(self, x: [f64; 4]) -> Four {
+        Four(x)
+    }
+
+    #[inline(always)]
+    fn numbers(self, x: Four) -> [f64; 4] {
+        x.0
+    }
+
+    #[inline(always)]
+    fn narrow(self, low: Four, high: Four) -> [f32; 8] {
+        each(|k| (if k < 4 { low.0[k] } else { high.0[k - 4] }) as f32)
+    }
+
+    #[inline(always)]
     fn prefetch<T>(self, _: &T) {}
 
     #[inline(never)]
@@ -188,6 +264,9 @@ pub(super) mod avx2 {
     //! references or slices whose lengths are checked.
 
     use std::arch::x86_64::*;
+    use std::ops::{Add, Mul, Sub};
+
+    use lancer_core::geometry::Real;
 
     use super::Lanes;
 
@@ -235,8 +314,44 @@ pub(super) mod avx2 {
     }
 
     // SAFETY of all blocks below: see the module's documentation.
+    /// Four `f64`, which only a value of [`Avx2`] makes.
+    #[derive(Clone, Copy)]
+    pub(in crate::wide) struct Four(__m256d);
+
+    impl Add for Four {
+        type Output = Self;
+        #[inline(always)]
+        fn add(self, b: Self) -> Self {
+            Self(unsafe { _mm256_add_pd(self.0, b.0) })
+        }
+    }
+
+    impl Sub for Four {
+        type Output = Self;
+        #[inline(always)]
+        fn sub(self, b: Self) -> Self {
+            Self(unsafe { _mm256_sub_pd(self.0, b.0) })
+        }
+    }
+
+    impl Mul for Four {
+        type Output = Self;
+        #[inline(always)]
+        fn mul(self, b: Self) -> Self {
+            Self(unsafe { _mm256_mul_pd(self.0, b.0) })
+        }
+    }
+
+    impl Real for Four {
+        #[inline(always)]
+        fn recip(self) -> Self {
+            Self(unsafe { _mm256_div_pd(_mm256_set1_pd(1.0), self.0) })
+        }
+    }
+
     impl Lanes for Avx2 {
         type F = __m256;
+        type D = Four;
 
         #[inline(always)]
         fn splat(self, x: f32) -> __m256 {
@@ -329,6 +444,23 @@ pub(super) mod avx2 {
                 let mask = _mm256_cmpeq_epi32(set, lanes);
                 _mm256_blendv_ps(b, a, _mm256_castsi256_ps(mask))
             }
+        }
+
+        #[inline(always)]
+        fn four(self, [a, b, c, d]: [f64; 4]) -> Four {
+            Four(unsafe { _mm256_setr_pd(a, b, c, d) })
+        }
+
+        #[inline(always)]
+        fn numbers(self, x: Four) -> [f64; 4] {
+            let mut numbers = [0.0; 4];
+            unsafe { _mm256_storeu_pd(numbers.as_mut_ptr(), x.0) };
+            numbers
+        }
+
+        #[inline(always)]
+        fn narrow(self, low: Four, high: Four) -> __m256 {
+            unsafe { _mm256_set_m128(_mm256_cvtpd_ps(high.0), _mm256_cvtpd_ps(low.0)) }
         }
 
         #[inline(always)]

@@ -5,6 +5,7 @@ mod lanes;
 mod packet;
 mod walk;
 
+use glam::DVec3;
 use lancer_core::geometry::{ConvexVolume, Interval, Ray};
 use lancer_core::intersector::{BeamTraversal, Hit, Intersector, Observable, Observer, Probe};
 use lancer_core::scene::{PrimitiveId, Scene};
@@ -271,15 +272,28 @@ impl<'s> Wide<'s> {
     #[inline(always)]
     fn triangle(&self, record: u32) -> (PrimitiveId, [usize; 3]) {
         let words = &self.leaves[record as usize..][..RECORD];
-        let [id, a, b, c] = [0, 1, 2, 3].map(|k| integer_of(words[k]));
-        (PrimitiveId(id), [a, b, c].map(|index| index as usize))
+        let index = |k: usize| integer_of(words[k]) as usize;
+        (PrimitiveId(integer_of(words[0])), [index(1), index(2), index(3)])
+    }
+
+    #[inline(always)]
+    fn corners(&self, [a, b, c]: [usize; 3]) -> [DVec3; 3] {
+        let positions = &self.scene.mesh.positions;
+        [positions[a], positions[b], positions[c]]
     }
 
     /// Lets `f64` decide on a triangle.
     #[inline(always)]
     fn test(&self, probe: &mut Probe, record: u32) -> bool {
         let (id, corners) = self.triangle(record);
-        probe.test_triangle(id, corners.map(|corner| self.scene.mesh.positions[corner]))
+        probe.test_triangle(id, self.corners(corners))
+    }
+
+    /// The same for one that is met in any case.
+    #[inline(always)]
+    fn solve(&self, probe: &mut Probe, record: u32) -> bool {
+        let (id, corners) = self.triangle(record);
+        probe.solve_triangle(id, self.corners(corners))
     }
 
     /// The primitives of a leaf.

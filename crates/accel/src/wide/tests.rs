@@ -255,8 +255,8 @@ fn packet<L: Lanes>(
     rays: &[Ray],
     range: Interval,
 ) -> Option<Vec<Option<Hit>>> {
-    let mut packet = Packet::new(lanes, wide, rays, range)?;
+    let mut packet = Packet::new(lanes, wide, range);
     let mut hits = vec![None; rays.len()];
-    packet.walk().then(|| packet.answer(&mut hits))?;
+    (packet.aim(rays) && packet.walk()).then(|| packet.answer(&mut hits))?;
     Some(hits)
 }

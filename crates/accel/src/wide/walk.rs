@@ -290,6 +290,16 @@ pub(super) fn near(entry: u64) -> f32 {
     f32::from_bits((entry >> 32) as u32)
 }
 
+/// Marks a candidate that `f64` must accept: no record is as far on.
+const CERTAIN: u32 = 1 << 31;
+
+/// Lets `f64` decide on a candidate.
+#[inline(always)]
+fn decide(wide: &Wide, probe: &mut Probe, candidate: u64) -> bool {
+    let what = candidate as u32;
+    if what & CERTAIN == 0 { wide.test(probe, what) } else { wide.solve(probe, what & !CERTAIN) }
+}
+
 /// A ray on its way to the closest hit.
 struct Closest<'w, 's, L: Lanes> {
     wide: &'w Wide<'s>,
@@ -331,8 +341,10 @@ impl<'w, L: Lanes> Closest<'w, '_, L> {
             if self.candidates.length == CANDIDATES {
                 self.decide();
             }
-            self.candidates.push(key(lowest[lane].max(0.0), record));
-            if certain >> lane & 1 != 0 {
+            let is_certain = certain >> lane & 1 != 0;
+            let what = if is_certain { record | CERTAIN } else { record };
+            self.candidates.push(key(lowest[lane].max(0.0), what));
+            if is_certain {
                 self.max = self.max.min(highest[lane]);
             }
         }
@@ -352,7 +364,7 @@ impl<'w, L: Lanes> Closest<'w, '_, L> {
         while let Some(candidate) = self.candidates.pop() {
             if near(candidate) <= self.max {
                 let wide = self.wide;
-                self.test(|probe| wide.test(probe, candidate as u32));
+                self.test(|probe| decide(wide, probe, candidate));
             }
         }
     }
@@ -364,7 +376,7 @@ impl<'w, L: Lanes> Closest<'w, '_, L> {
         let mut probe =
             self.probe.take().unwrap_or(Probe::new(self.wide.scene, self.ray, self.range));
         while let Some(candidate) = self.candidates.pop() {
-            if near(candidate) <= max && self.wide.test(&mut probe, candidate as u32) {
+            if near(candidate) <= max && decide(self.wide, &mut probe, candidate) {
                 max = max.min(self.in_frame.slabs.parameter(probe.range().max));
             }
         }

@@ -16,7 +16,7 @@ pub use bounds::{Bounds3, Slabs};
 pub use leave::leave_surface;
 pub use ray::{Interval, Ray};
 pub use sphere::Sphere;
-pub use triangle::{Shear, TriangleHit, intersect_triangle};
+pub use triangle::{Axis, Real, Shear, TriangleHit, intersect_triangle, solve_triangle};
 #[cfg(test)]
 pub(crate) use triangulate::newell_normal;
 pub(crate) use triangulate::triangulate;

@@ -1,30 +1,62 @@
+use std::ops::{Add, Mul, Sub};
+
 use glam::DVec3;
 
 use super::{Ray, gamma};
 
-/// The shear that turns a ray into the z axis; computed once per ray, used for every triangle.
+/// What the intersection computes with: an `f64`, or several side by side, each rounded like one alone.
+pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+    /// 1 / x
+    fn recip(self) -> Self;
+}
+
+impl Real for f64 {
+    #[inline(always)]
+    fn recip(self) -> Self {
+        1.0 / self
+    }
+}
+
+/// The shear that turns a ray, or several side by side, into the z axis; computed once, used for every
+/// triangle.
 ///
 /// Source: Woop, Benthin, Wald, *Watertight Ray/Triangle Intersection*, JCGT 2(1), 2013.
 #[derive(Clone, Copy, Debug)]
-pub struct Shear {
-    /// The axis along which the direction is longest; it becomes z.
+pub struct Shear<T = f64> {
     axis: Axis,
-    x: f64,
-    y: f64,
-    z: f64,
+    x: T,
+    y: T,
+    z: T,
 }
 
-#[derive(Clone, Copy, Debug)]
-enum Axis {
+/// The axis along which a direction is longest; the shear makes it z.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// The first.
     X,
+    /// The second.
     Y,
+    /// The third, also of a direction that is not longer along one of the others.
     Z,
 }
 
 impl Axis {
+    /// The longest of a direction.
+    #[inline]
+    pub fn longest(direction: DVec3) -> Self {
+        let d = direction.abs();
+        if d.x > d.y && d.x > d.z {
+            Self::X
+        } else if d.y > d.z {
+            Self::Y
+        } else {
+            Self::Z
+        }
+    }
+
     /// Cyclic renaming of the components that makes this axis the last.
     #[inline(always)]
-    fn to_last(self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    fn to_last<T>(self, [x, y, z]: [T; 3]) -> [T; 3] {
         match self {
             Self::X => [y, z, x],
             Self::Y => [z, x, y],
@@ -37,17 +69,24 @@ impl Shear {
     /// Prepares the triangle tests of one ray.
     #[inline]
     pub fn new(direction: DVec3) -> Self {
-        let d = direction.abs();
-        let axis = if d.x > d.y && d.x > d.z {
-            Axis::X
-        } else if d.y > d.z {
-            Axis::Y
-        } else {
-            Axis::Z
-        };
-        let [x, y, z] = axis.to_last(direction.to_array());
-        let z = 1.0 / z;
+        Self::along(Axis::longest(direction), direction.to_array())
+    }
+}
+
+impl<T: Real> Shear<T> {
+    /// The same for rays whose directions have one longest axis.
+    #[inline(always)]
+    pub fn along(axis: Axis, direction: [T; 3]) -> Self {
+        let [x, y, z] = axis.to_last(direction);
+        let z = z.recip();
         Self { axis, x: x * z, y: y * z, z }
+    }
+
+    /// A point relative to the origin, sheared: x and y, and z as it was.
+    #[inline(always)]
+    fn flatten(&self, point: [T; 3]) -> [T; 3] {
+        let [x, y, z] = self.axis.to_last(point);
+        [x - self.x * z, y - self.y * z, z]
     }
 }
 
@@ -81,38 +120,77 @@ pub struct TriangleHit {
 #[doc(alias = "eq:ray-triangle")]
 #[inline(always)] // Returned through memory its result costs as much again as the test.
 pub fn intersect_triangle(corners: [DVec3; 3], ray: &Ray, shear: &Shear) -> Option<TriangleHit> {
-    let [a, b, c] = corners.map(|corner| (corner - ray.origin).to_array());
+    let corners = corners.map(|corner| (corner - ray.origin).to_array());
+    for_each_axis(
+        shear,
+        #[inline(always)]
+        |shear| sheared(corners, shear),
+    )
+}
+
+/// The parameters and weights of [`intersect_triangle`], of rays that are known to meet their triangles, and
+/// without its checks. `corners` are relative to the rays' origins.
+#[inline(always)]
+pub fn solve_triangle<T: Real>(corners: [[T; 3]; 3], shear: &Shear<T>) -> (T, [T; 3]) {
+    for_each_axis(
+        shear,
+        #[inline(always)]
+        |shear| {
+            let [a, b, c] = corners;
+            let corners = [shear.flatten(a), shear.flatten(b), shear.flatten(c)];
+            let [u, v, w] = edge_functions(corners);
+            let inverse = (u + v + w).recip();
+            (parameter(corners, [u, v, w], shear, inverse), [u * inverse, v * inverse, w * inverse])
+        },
+    )
+}
+
+/// Compiles `f` once for each axis: then the renaming costs nothing.
+#[inline(always)]
+fn for_each_axis<T: Copy, R>(shear: &Shear<T>, f: impl Fn(&Shear<T>) -> R) -> R {
     match shear.axis {
-        Axis::X => sheared(Axis::X, [a, b, c], shear),
-        Axis::Y => sheared(Axis::Y, [a, b, c], shear),
-        Axis::Z => sheared(Axis::Z, [a, b, c], shear),
+        Axis::X => f(&Shear { axis: Axis::X, ..*shear }),
+        Axis::Y => f(&Shear { axis: Axis::Y, ..*shear }),
+        Axis::Z => f(&Shear { axis: Axis::Z, ..*shear }),
     }
 }
 
-/// The test for one renaming of the axes; `axis` is a constant at each call.
+/// U, V and W of sheared corners.
 #[inline(always)]
-fn sheared(axis: Axis, corners: [[f64; 3]; 3], shear: &Shear) -> Option<TriangleHit> {
-    let [[ax, ay, az], [bx, by, bz], [cx, cy, cz]] = corners.map(|corner| axis.to_last(corner));
-    let (ax, ay) = (ax - shear.x * az, ay - shear.y * az);
-    let (bx, by) = (bx - shear.x * bz, by - shear.y * bz);
-    let (cx, cy) = (cx - shear.x * cz, cy - shear.y * cz);
+fn edge_functions<T: Real>([[ax, ay, _], [bx, by, _], [cx, cy, _]]: [[T; 3]; 3]) -> [T; 3] {
+    [cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax]
+}
 
-    let u = cx * by - cy * bx;
-    let v = ax * cy - ay * cx;
-    let w = bx * ay - by * ax;
+/// t, given 1 / (U + V + W).
+#[inline(always)]
+fn parameter<T: Real>(
+    [a, b, c]: [[T; 3]; 3],
+    [u, v, w]: [T; 3],
+    shear: &Shear<T>,
+    inverse: T,
+) -> T {
+    (u * (shear.z * a[2]) + v * (shear.z * b[2]) + w * (shear.z * c[2])) * inverse
+}
+
+/// The test for one renaming of the axes; the axis is a constant at each call.
+#[inline(always)]
+fn sheared(corners: [[f64; 3]; 3], shear: &Shear) -> Option<TriangleHit> {
+    let corners = corners.map(|corner| shear.flatten(corner));
+    let [u, v, w] = edge_functions(corners);
     if min(u, v, w) < 0.0 && max(u, v, w) > 0.0 {
         return None;
     }
+    let [[ax, ay, az], [bx, by, bz], [cx, cy, cz]] = corners;
     let det = u + v + w;
     if det == 0.0 || beside(ax, bx, cx) || beside(ay, by, cy) {
         return None;
     }
-    let inverse = 1.0 / det;
-    let reach = max_abs(az, bz, cz);
-    let (az, bz, cz) = (shear.z * az, shear.z * bz, shear.z * cz);
-    let t = (u * az + v * bz + w * cz) * inverse;
+    let inverse = Real::recip(det);
+    let t = parameter(corners, [u, v, w], shear, inverse);
 
-    let (max_x, max_y, max_z) = (max_abs(ax, bx, cx), max_abs(ay, by, cy), max_abs(az, bz, cz));
+    let reach = max_abs(az, bz, cz);
+    let (max_x, max_y) = (max_abs(ax, bx, cx), max_abs(ay, by, cy));
+    let max_z = max_abs(shear.z * az, shear.z * bz, shear.z * cz);
     let max_e = max_abs(u, v, w);
     let dx = gamma(5) * (max_x + shear.x.abs() * reach);
     let dy = gamma(5) * (max_y + shear.y.abs() * reach);

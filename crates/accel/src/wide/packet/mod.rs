@@ -1,21 +1,20 @@
 //! The walk of rays that start in one point and go about the same way, together.
 
-use glam::DVec2;
+mod aim;
+mod answer;
+
 use lancer_core::geometry::{Interval, Ray};
-use lancer_core::intersector::{Hit, Probe};
+use lancer_core::intersector::Hit;
 use smallvec::SmallVec;
 
 use super::collapse::WIDTH;
 use super::lanes::{Lanes, Vectors, cross, dot, splat3, sub3};
-use super::walk::{self, Bounds, Filtered, MOST_PENDING, Stack, TriangleBounds, U, child, near};
+use super::walk::{self, Bounds, Filtered, MOST_PENDING, Stack, TriangleBounds, child, near};
 use super::{Child, Node, Wide};
 
 /// Rays of a packet at most: 8 × 8 pixels.
 const RAYS: usize = 64;
 const VECTORS: usize = RAYS / WIDTH;
-/// The farthest origin, in units of the scene's frame, and the steepest slope.
-const FARTHEST: f64 = 4.0;
-const STEEPEST: f64 = 2.0;
 /// A packet pays where a triangle is at least this part of the packet wide.
 const WIDEST: f64 = 0.25;
 /// With more work than this each ray goes alone: about what all of them cost alone.
@@ -32,11 +31,9 @@ pub(super) fn closest<L: Lanes>(
     range: Interval,
     hits: &mut [Option<Hit>],
 ) {
+    let mut packet = Packet::new(lanes, wide, range);
     for (rays, hits) in rays.chunks(RAYS).zip(hits.chunks_mut(RAYS)) {
-        if let Some(mut packet) = Packet::new(lanes, wide, rays, range)
-            && packet.pays()
-            && packet.walk()
-        {
+        if packet.aim(rays) && packet.pays() && packet.walk() {
             packet.answer(hits);
             continue;
         }
@@ -86,11 +83,13 @@ pub(super) struct Packet<'p, 's, L: Lanes> {
     /// Nothing beyond can be the closest hit, of each ray, and of any.
     max: [[f32; WIDTH]; VECTORS],
     farthest: f32,
-    /// The closest certain hit so far: its lower end, and whose it is.
+    /// The closest certain hit so far: its lower end, and its record.
     lowest: [[f32; WIDTH]; VECTORS],
     best: [[u32; WIDTH]; VECTORS],
-    /// Ray and primitive of what might be closer, or not.
+    /// Ray and record of what might be closer, or not.
     doubts: SmallVec<[u64; DOUBTS]>,
+    /// A bit for each ray that has some.
+    doubtful: u64,
     /// The work so far, in visits of a node: a leaf counts as two, eight rays and a triangle as one.
     spent: usize,
 }
@@ -105,114 +104,37 @@ struct Side {
     offset: f32,
 }
 
+/// No record.
 const NONE: u32 = u32::MAX;
 
 impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
-    /// `None` if the rays do not start in one point, go too different ways, or come from far away.
+    /// A packet without rays.
     #[inline(always)]
-    pub(super) fn new(
-        lanes: L,
-        wide: &'p Wide<'s>,
-        rays: &'p [Ray],
-        range: Interval,
-    ) -> Option<Self> {
-        let first = rays.first()?;
-        if rays.iter().any(|ray| ray.origin != first.origin) {
-            return None;
-        }
-        let origin = wide.frame.point(first.origin);
-        let direction = first.direction.to_array();
-        let last = (0..3).max_by(|&a, &b| direction[a].abs().total_cmp(&direction[b].abs()))?;
-        let axes = [(last + 1) % 3, (last + 2) % 3, last];
-        let sign = direction[last].signum();
-        let near_by = origin.abs().max_element() <= FARTHEST;
-        if wide.nodes.is_empty() || !wide.scene.spheres.is_empty() || !near_by {
-            return None;
-        }
-
-        let mut slopes = [[[0.0_f32; WIDTH]; VECTORS]; 2];
-        let mut max = [[0.0_f32; WIDTH]; VECTORS];
-        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-        let (mut least, mut min) = (f64::INFINITY, 0.0_f64);
-        let mut alike = true;
-        for (k, ray) in rays.iter().enumerate() {
-            let d = ray.direction.to_array();
-            let along = sign * d[last];
-            let slope = DVec2::new(d[axes[0]], d[axes[1]]) / along;
-            alike &= along > 0.0;
-            (low, high) = (low.min(slope), high.max(slope));
-            least = least.min(along);
-            let per_unit = along * wide.frame.to_unit;
-            min = min.max(range.min * per_unit);
-            slopes[0][k / WIDTH][k % WIDTH] = slope.x as f32;
-            slopes[1][k / WIDTH][k % WIDTH] = slope.y as f32;
-            max[k / WIDTH][k % WIDTH] = ((range.max * per_unit) as f32).next_up();
-        }
-        // A NaN along the axis is not above 0; beside it, it meets nothing, as it does alone.
-        let flat = low.min_element() >= -STEEPEST && high.max_element() <= STEEPEST;
-        if !(alike && flat && least > 1e-9 && min < 1e9) {
-            return None;
-        }
-
-        let o = origin.to_array();
-        let (low, high) = (low.as_vec2().to_array(), high.as_vec2().to_array());
-        let (low, high) = (low.map(f32::next_down), high.map(f32::next_up));
-        let reach = 1.0 + origin.abs().max_element() as f32;
-        let pad = f64::from(16.0 * U * reach);
-        let mut spreads = [[[f32::NAN; WIDTH]; 2]; 2];
-        for k in 0..rays.len().div_ceil(WIDTH) {
-            let count = (rays.len() - k * WIDTH).min(WIDTH);
-            let ends = [0, 1].map(|axis: usize| {
-                let slopes = &slopes[axis][k][..count];
-                let low = slopes.iter().copied().fold(f32::INFINITY, f32::min);
-                (low, slopes.iter().copied().fold(f32::NEG_INFINITY, f32::max))
-            });
-            let Spread { middle, half } = Spread::between(ends.map(|e| e.0), ends.map(|e| e.1));
-            for (of_axis, spread) in spreads.iter_mut().zip([middle, half]) {
-                (of_axis[0][k], of_axis[1][k]) = (spread[0], spread[1]);
-            }
-        }
-        let mut sides = [Side { turned: false, factor: 0.0, offset: 0.0 }; 4];
-        for (k, side) in sides.iter_mut().enumerate() {
-            let (axis, turned) = (k / 2, k % 2 == 1);
-            let slope = if turned { low[axis] } else { high[axis] };
-            // Beside: turn · (x − o_x − slope w) > 0 with the least x and the most of slope · w.
-            let turn = if turned { -1.0 } else { 1.0 };
-            let factor = -turn * f64::from(slope) * sign;
-            *side = Side {
-                turned,
-                factor: factor as f32,
-                offset: (-factor * o[last] - turn * o[axes[axis]] - pad) as f32,
-            };
-        }
-        let steepest = low.iter().chain(&high).fold(1.0_f32, |most, slope| most.max(slope.abs()));
-        let valid = std::array::from_fn(|k| match rays.len().saturating_sub(k * WIDTH) {
-            count if count < WIDTH => (1 << count) - 1,
-            _ => 0xff,
-        });
-        Some(Self {
+    pub(super) fn new(lanes: L, wide: &'p Wide<'s>, range: Interval) -> Self {
+        Self {
             lanes,
             wide,
-            rays,
+            rays: &[],
             range,
-            axes,
-            sign: sign as f32,
-            spread: Spread::between(low, high),
-            spreads,
-            bounds: Bounds::new(reach, steepest),
-            origin: o.map(|x| x as f32),
-            sides,
-            depth: [sign, -sign * o[last] - pad, -sign * o[last] + pad].map(|x| x as f32),
-            min: (min as f32).next_up(),
-            slopes,
-            valid,
-            max,
-            farthest: max.iter().flatten().fold(0.0, |most, &max| most.max(max)),
-            lowest: [[f32::INFINITY; WIDTH]; VECTORS],
+            axes: [0, 1, 2],
+            sign: 1.0,
+            spread: Spread::between([0.0; 2], [0.0; 2]),
+            spreads: [[[0.0; WIDTH]; 2]; 2],
+            bounds: Bounds::new(0.0, 0.0),
+            origin: [0.0; 3],
+            sides: [Side { turned: false, factor: 0.0, offset: 0.0 }; 4],
+            depth: [0.0; 3],
+            min: 0.0,
+            slopes: [[[0.0; WIDTH]; VECTORS]; 2],
+            valid: [0; VECTORS],
+            max: [[0.0; WIDTH]; VECTORS],
+            farthest: 0.0,
+            lowest: [[0.0; WIDTH]; VECTORS],
             best: [[NONE; WIDTH]; VECTORS],
             doubts: SmallVec::new(),
+            doubtful: 0,
             spent: 0,
-        })
+        }
     }
 
     /// Whether the triangles are large enough, judged by what two of the rays hit.
@@ -411,30 +333,13 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
             self.best[vector][lane] = triangle.record;
         }
         let mut doubtful = filtered.kept & !nearer;
+        self.doubtful |= u64::from(doubtful) << (vector * WIDTH);
         while doubtful != 0 {
             let lane = doubtful.trailing_zeros() as usize % WIDTH;
             doubtful &= doubtful - 1;
             self.doubts.push(((vector * WIDTH + lane) as u64) << 32 | u64::from(triangle.record));
         }
         shorter != 0
-    }
-
-    /// Lets `f64` decide on what is left.
-    #[inline(always)]
-    pub(super) fn answer(&mut self, hits: &mut [Option<Hit>]) {
-        self.doubts.sort_unstable();
-        let mut doubts = self.doubts.iter().peekable();
-        for (k, (ray, hit)) in self.rays.iter().zip(hits).enumerate() {
-            let mut probe = Probe::new(self.wide.scene, ray, self.range);
-            let best = self.best[k / WIDTH][k % WIDTH];
-            if best != NONE {
-                self.wide.test(&mut probe, best);
-            }
-            while let Some(doubt) = doubts.next_if(|&&doubt| doubt >> 32 == k as u64) {
-                self.wide.test(&mut probe, *doubt as u32);
-            }
-            *hit = probe.best();
-        }
     }
 }
 
