@@ -89,11 +89,8 @@ impl Image {
     /// Negative channels and NaN become 0, infinite ones 255; [`Image::defects`] counts them.
     pub fn to_srgb8(&self, exposure_ev: f64) -> Vec<[u8; 3]> {
         let scale = exposure_ev.exp2();
-        let level = |channel: f32| {
-            let displayed = (f64::from(channel) * scale).clamp(0.0, 1.0);
-            // `as` turns the NaN that passes the clamp into 0.
-            (255.0 * srgb::encode(displayed)).round() as u8
-        };
+        let levels = srgb::Levels::get();
+        let level = |channel: f32| levels.of((f64::from(channel) * scale).clamp(0.0, 1.0));
         self.pixels.iter().map(|pixel| pixel.map(level)).collect()
     }
 }

@@ -1,5 +1,57 @@
 //! The sRGB curve, IEC 61966-2-1.
 
+use std::sync::LazyLock;
+
+/// Which of 256 levels is nearest to a display value, found without a power for each channel.
+pub(super) struct Levels {
+    /// The least linear value of each level.
+    first: [f64; 256],
+    /// The level at the lower end of each of as many parts of [0, 1]: few have two more.
+    at: [u8; PARTS],
+}
+
+const PARTS: usize = 4096;
+
+impl Levels {
+    /// All of them.
+    pub(super) fn get() -> &'static Self {
+        static LEVELS: LazyLock<Levels> = LazyLock::new(Levels::new);
+        &LEVELS
+    }
+
+    fn new() -> Self {
+        let mut first = [0.0; 256];
+        for (level, first) in first.iter_mut().enumerate().skip(1) {
+            // Rounding may have missed it by a few numbers.
+            let mut least = decode((level as f64 - 0.5) / 255.0);
+            while nearest_level(least) >= level as u8 {
+                least = least.next_down();
+            }
+            while nearest_level(least) < level as u8 {
+                least = least.next_up();
+            }
+            *first = least;
+        }
+        let at = std::array::from_fn(|part| nearest_level(part as f64 / PARTS as f64));
+        Self { first, at }
+    }
+
+    /// The level of a linear value in [0, 1]; that of NaN is 0.
+    #[inline]
+    pub(super) fn of(&self, linear: f64) -> u8 {
+        let part = (linear * PARTS as f64) as usize;
+        let mut level = self.at[part.min(PARTS - 1)];
+        while level < 255 && linear >= self.first[usize::from(level) + 1] {
+            level += 1;
+        }
+        level
+    }
+}
+
+fn nearest_level(linear: f64) -> u8 {
+    (255.0 * encode(linear)).round() as u8
+}
+
 /// The display value in [0, 1] of a linear value in [0, 1].
 pub(super) fn encode(linear: f64) -> f64 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
@@ -13,6 +65,17 @@ pub(super) fn decode(display: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn levels_are_those_of_the_curve() {
+        let levels = Levels::get();
+        let numbers = (0..=100_000).map(|k| f64::from(k) / 100_000.0);
+        let limits =
+            levels.first.into_iter().flat_map(|x| [x.next_down().max(0.0), x, x.next_up()]);
+        for linear in numbers.chain(limits).chain([f64::NAN, f64::MIN_POSITIVE]) {
+            assert_eq!(levels.of(linear), nearest_level(linear), "{linear}");
+        }
+    }
 
     #[test]
     fn the_two_parts_meet_at_the_knee() {

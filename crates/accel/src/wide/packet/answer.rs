@@ -59,14 +59,9 @@ impl<L: Lanes> Packet<'_, '_, L> {
             alike &= Axis::longest(ray.direction) == axis;
             let (id, indices) = wide.triangle(self.best[k / WIDTH][k % WIDTH]);
             ids[lane] = id;
-            for component in 0..3 {
-                direction[component][lane] = ray.direction[component];
-            }
+            scatter(ray.direction, lane, &mut direction);
             for (corner, index) in corners.iter_mut().zip(indices) {
-                let position = wide.scene.mesh.positions[index];
-                for component in 0..3 {
-                    corner[component][lane] = position[component];
-                }
+                scatter(wide.scene.mesh.positions[index], lane, corner);
             }
         }
         if !alike {
@@ -91,6 +86,13 @@ impl<L: Lanes> Packet<'_, '_, L> {
             hits[k] = probe.best();
         }
     }
+}
+
+/// Puts a vector's components into a lane of each.
+#[inline(always)]
+fn scatter(vector: DVec3, lane: usize, components: &mut [[f64; 4]; 3]) {
+    let [x, y, z] = components;
+    (x[lane], y[lane], z[lane]) = (vector.x, vector.y, vector.z);
 }
 
 /// Four points relative to the packet's origin.
