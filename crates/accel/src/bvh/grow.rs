@@ -1,5 +1,6 @@
 use glam::Vec3A;
 use lancer_core::scene::PrimitiveId;
+use smallvec::SmallVec;
 
 use super::{Item, Split};
 use crate::binary_tree::{TreeNode, TreeStatistics};
@@ -102,10 +103,14 @@ fn divide(items: &mut [Item], bounds: FrameBox, depth: usize, rule: Rule) -> Opt
     if rule.split == Split::Median || depth >= SAH_DEPTH {
         return too_many.then(|| halve(items));
     }
-    let Some(plane) = best_plane(items) else { return too_many.then(|| halve(items)) };
     let area = bounds.half_area();
-    let pays = NODE_COST * area + plane.cost < area * items.len() as f32;
-    (too_many || pays).then(|| plane.partition(items))
+    let pays = |cost: f32| NODE_COST * area + cost < area * items.len() as f32;
+    if items.len() <= FEW {
+        let cut = Cut::best(items);
+        return (too_many || pays(cut.cost)).then(|| cut.sort(items));
+    }
+    let Some(plane) = best_plane(items) else { return too_many.then(|| halve(items)) };
+    (too_many || pays(plane.cost)).then(|| plane.partition(items))
 }
 
 fn halve(items: &mut [Item]) -> usize {
@@ -136,6 +141,64 @@ fn around_centers(items: &[Item]) -> FrameBox {
         let center = item.center();
         bounds.union(FrameBox { min: center, max: center })
     })
+}
+
+/// So many items are sorted along each axis, and all cuts are compared: that is quicker than bins, most of
+/// which would be empty.
+const FEW: usize = 16;
+
+/// A cut of a few items into the `left` first ones of an order and the others.
+struct Cut {
+    /// Indices of the items.
+    order: [u8; FEW],
+    left: usize,
+    cost: f32,
+}
+
+impl Cut {
+    /// The cheapest: between neighbours in the order of centres along an axis, where centres coincide of ids.
+    #[inline(never)] // As `best_plane`.
+    fn best(items: &[Item]) -> Self {
+        let mut best =
+            Self { order: std::array::from_fn(|k| k as u8), left: 0, cost: f32::INFINITY };
+        // Two are cut between them whatever the axis.
+        for axis in 0..if items.len() == 2 { 1 } else { 3 } {
+            // As integers the centres' bits are in the order of numbers, or in the opposite if negative.
+            let mut keys = [(u64::MAX, 0); FEW];
+            for ((k, item), key) in (0..).zip(items).zip(&mut keys) {
+                let bits = item.center()[axis].to_bits();
+                let rising = if bits >> 31 == 0 { bits | 1 << 31 } else { !bits };
+                *key = (u64::from(rising) << 32 | u64::from(item.primitive.0), k);
+            }
+            keys[..items.len()].sort_unstable_by_key(|&(key, _)| key);
+            let order = keys.map(|(_, k)| k);
+            let content = |place: usize| Content {
+                bounds: items[usize::from(order[place])].bounds,
+                count: 1,
+            };
+            let mut right_of = [Content::NONE; FEW];
+            for k in (1..items.len()).rev() {
+                right_of[k - 1] = right_of[k].and(content(k));
+            }
+            let mut left = Content::NONE;
+            for (last, right) in right_of[..items.len() - 1].iter().enumerate() {
+                left = left.and(content(last));
+                let cost = left.cost() + right.cost();
+                if cost < best.cost {
+                    best = Self { order, left: last + 1, cost };
+                }
+            }
+        }
+        best
+    }
+
+    /// Puts the items into this order, and returns how many are left.
+    fn sort(&self, items: &mut [Item]) -> usize {
+        let mut sorted: SmallVec<[Item; FEW]> = SmallVec::new();
+        sorted.extend(self.order[..items.len()].iter().map(|&k| items[usize::from(k)]));
+        items.copy_from_slice(&sorted);
+        self.left
+    }
 }
 
 /// Bins of equal width along the three axes of the box around the centres, and bins of sizes: a floor under a
@@ -311,6 +374,20 @@ mod tests {
         assert_eq!(plane.partition(&mut row), 2);
         assert_eq!(row[2].primitive, PrimitiveId(0));
         assert!(best_plane(&items([Vec3A::ONE; 3])).is_none());
+    }
+
+    /// The same row, all cuts compared; and of boxes in one place the one with the least id is cut off.
+    #[test]
+    fn few_items_are_cut_at_the_best_place() {
+        let mut row = items([0.0, 8.0, -1.0].map(|y| Vec3A::new(0.0, y, 0.0)));
+        let cut = Cut::best(&row);
+        assert_eq!((cut.cost, cut.sort(&mut row)), (4.25, 2));
+        assert_eq!([2, 0, 1].map(PrimitiveId), [0, 1, 2].map(|k| row[k].primitive));
+        let mut alike = items([Vec3A::ONE; 3]);
+        alike.reverse();
+        let cut = Cut::best(&alike);
+        assert_eq!((cut.cost, cut.sort(&mut alike)), (2.25, 1));
+        assert_eq!(alike[0].primitive, PrimitiveId(0));
     }
 
     /// Near boxes are cheaper to test than to tell apart; far ones are not.
