@@ -456,8 +456,8 @@ impl<L: Lanes> Any<'_, '_, L> {
     #[inline(always)]
     fn visit(&self, leaf: Child) -> Option<PrimitiveId> {
         let wide = self.wide;
-        let mut probe = Probe::new(wide.scene, self.ray, self.range);
         if leaf.has_spheres() {
+            let mut probe = Probe::new(wide.scene, self.ray, self.range);
             return wide.primitives(leaf).find(|&primitive| probe.test(primitive));
         }
         let (lanes, ray) = (self.in_frame.lanes, &self.in_frame);
@@ -477,6 +477,7 @@ impl<L: Lanes> Any<'_, '_, L> {
                 return Some(wide.triangle(record(lane)).0);
             }
         }
+        let mut probe = Probe::new(wide.scene, self.ray, self.range);
         let mut kept = filtered.kept;
         while kept != 0 {
             let lane = kept.trailing_zeros() as usize % WIDTH;
