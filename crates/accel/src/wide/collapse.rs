@@ -5,7 +5,8 @@ use lancer_core::scene::{PrimitiveId, Scene};
 use rayon::prelude::*;
 use smallvec::SmallVec;
 
-use super::{Child, Node, RECORD, UNIT, word_of};
+use super::walk::U;
+use super::{Child, HEADER, Node, RECORD, UNIT, word_of};
 use crate::binary_tree::{BinaryTree, TreeNode};
 use crate::four_boxes::FrameBox;
 
@@ -156,7 +157,7 @@ pub(super) fn collapse(tree: &BinaryTree) -> Collapsed {
                 nodes[index].children[lane] = Child::leaf(words, primitives.len(), has_spheres);
                 leaves.push((words, primitives));
                 let per_primitive = if has_spheres { 1 } else { 9 + RECORD };
-                words += (1 + per_primitive * primitives.len()).next_multiple_of(UNIT);
+                words += (HEADER + per_primitive * primitives.len()).next_multiple_of(UNIT);
             } else {
                 pending.push((child, Some((index, lane))));
             }
@@ -213,8 +214,7 @@ fn has_spheres(scene: &Scene, primitives: &[PrimitiveId]) -> bool {
 
 /// Writes a leaf: see [`super::Wide`] for its words.
 fn fill_leaf(tree: &BinaryTree, primitives: &[PrimitiveId], words: &mut [f32]) {
-    let (longest, words) = words.split_first_mut().expect("a leaf has words");
-    *longest = super::SHORTEST;
+    let (header, words) = words.split_at_mut(HEADER);
     if has_spheres(tree.scene, primitives) {
         for (word, id) in words.iter_mut().zip(primitives) {
             *word = word_of(id.0);
@@ -223,6 +223,7 @@ fn fill_leaf(tree: &BinaryTree, primitives: &[PrimitiveId], words: &mut [f32]) {
     }
     let (mesh, frame) = (&tree.scene.mesh, &tree.frame);
     let count = primitives.len();
+    let mut longest = super::SHORTEST;
     let (rows, records) = words.split_at_mut(9 * count);
     for (lane, (id, record)) in primitives.iter().zip(records.chunks_mut(RECORD)).enumerate() {
         let [a, b, c] = mesh.corners(id.0 as usize);
@@ -231,12 +232,13 @@ fn fill_leaf(tree: &BinaryTree, primitives: &[PrimitiveId], words: &mut [f32]) {
         for (k, part) in parts.into_iter().flat_map(|part| part.to_array()).enumerate() {
             rows[k * count + lane] = part as f32;
             if k >= 3 {
-                *longest = longest.max((part as f32).abs());
+                longest = longest.max((part as f32).abs());
             }
         }
         let [a, b, c] = mesh.triangles[id.0 as usize].vertices;
         record.copy_from_slice(&[id.0, a, b, c].map(word_of));
     }
+    header.copy_from_slice(&[longest, 64.0 * U * longest, longest * longest]);
 }
 
 impl Node {

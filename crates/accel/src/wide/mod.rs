@@ -26,7 +26,7 @@ use lanes::avx2::Avx2;
 /// ```text
 /// node, 256 bytes     lowest x [8]  highest x [8]  lowest y [8]  …  highest z [8]   f32, rounded outwards
 ///                     child [8]     a node, or a leaf and its number of primitives
-/// leaf, words of 4    longest edge component s,
+/// leaf, words of 4    longest edge component s, 64 u s, s²
 ///                     a.x [n] a.y [n] a.z [n]   one corner
 ///                     e.x [n] e.y [n] e.z [n]   from the second to it
 ///                     f.x [n] f.y [n] f.z [n]   from it to the third
@@ -72,11 +72,11 @@ use lanes::avx2::Avx2;
 ///                          for two differences                               =  u δ s (12 D + 114 c + 60 s)
 /// ```
 ///
-/// so with q = u (16 D + 128 c), e = δ s (q + 64 u s), e_Δ = 64 u s² δ and e_T = s² q / 2 whatever has
+/// so with p = u (16 D + 128 c + 64 s), e = δ s p, e_Δ = 64 u s² δ and e_T = s² p / 2 whatever has
 /// U, V, W ≥ 0 is kept by U, V, W ≥ −e, and U, V, W > e, T > e_T, |Δ| > 2 e_Δ imply a true hit. All four are
 /// turned by the sign of Δ, which is wrong only where |Δ| ≤ 48 u s² δ. Then a true hit has U and V no larger
 /// than that, which e covers, and T = t Δ no larger than 48 u s² (c + s), since no point of the triangle is
-/// farther than c + s: so T is kept from −e'_T = −s² (q + 64 u s) on. The part
+/// farther than c + s: so T is kept from −2 e_T on. The part
 /// with c lets what is near be small: a teapot in a stadium is told apart from its neighbours' triangles.
 ///
 /// The slack beyond first order, and the noise of the `f64` test (2⁻²⁹ of the above in U, V, W; its own bound
@@ -97,6 +97,8 @@ pub struct Wide<'s> {
 const SHORTEST: f32 = 1.0 / (1 << 20) as f32;
 /// Leaves begin at multiples of this many words.
 const UNIT: usize = 4;
+/// Words of a leaf before those of its triangles.
+const HEADER: usize = 3;
 /// Words of a triangle's id and corners.
 const RECORD: usize = 4;
 
@@ -265,7 +267,7 @@ impl<'s> Wide<'s> {
     /// Where the record of a leaf's triangle begins, among all words.
     #[inline(always)]
     fn record(leaf: Child, lane: usize) -> u32 {
-        (leaf.offset() + 1 + 9 * leaf.count() + RECORD * lane) as u32
+        (leaf.offset() + HEADER + 9 * leaf.count() + RECORD * lane) as u32
     }
 
     /// A triangle by its record, and its corners' indices.
@@ -301,7 +303,7 @@ impl<'s> Wide<'s> {
     fn primitives(&self, leaf: Child) -> impl Iterator<Item = PrimitiveId> {
         (0..leaf.count()).map(move |lane| {
             let word = if leaf.has_spheres() {
-                leaf.offset() + 1 + lane
+                leaf.offset() + HEADER + lane
             } else {
                 Self::record(leaf, lane) as usize
             };

@@ -8,7 +8,7 @@ use lancer_core::scene::PrimitiveId;
 
 use super::collapse::WIDTH;
 use super::lanes::{Lanes, Vectors, cross, dot, splat3, sub3};
-use super::{Child, Node, Wide};
+use super::{Child, HEADER, Node, Wide};
 use crate::bvh::MAX_DEPTH;
 use crate::four_boxes::FourSlabs;
 
@@ -78,7 +78,7 @@ impl<L: Lanes> WideRay<L> {
         let slabs = &self.slabs;
         let reach = 1.0 + slabs.origin.abs().max_element() + slabs.moved / U;
         let bounds = Bounds::new(reach, slabs.direction.abs().max_element());
-        let [ax, ay, az, ex, ey, ez, fx, fy, fz] = l.rows::<9>(&words[1..], count);
+        let [ax, ay, az, ex, ey, ez, fx, fy, fz] = l.rows::<9>(&words[HEADER..], count);
         let (e, f) = ([ex, ey, ez], [fx, fy, fz]);
         let origin = splat3(l, slabs.origin.to_array());
         let direction = splat3(l, slabs.direction.to_array());
@@ -87,7 +87,7 @@ impl<L: Lanes> WideRay<L> {
         let r = cross(l, c, direction);
         let (det, t) = (dot(l, n, direction), dot(l, n, c));
         let (u, v) = (dot(l, r, f), dot(l, r, e));
-        let bounds = bounds.of(l, words[0], bounds.noise(l, c));
+        let bounds = bounds.of(l, words, bounds.noise(l, words, c));
         Filtered::new(l, [u, v, det, t], bounds, l.splat(max), (1 << count) - 1)
     }
 }
@@ -102,10 +102,9 @@ pub(super) struct Bounds {
 #[derive(Clone, Copy)]
 pub(super) struct TriangleBounds<F> {
     e: F,
-    e_t: F,
-    e_det: F,
-    /// e'_T
+    /// 2 e_T
     e_behind: F,
+    e_det: F,
 }
 
 impl Bounds {
@@ -115,22 +114,23 @@ impl Bounds {
         Self { reach, length }
     }
 
-    /// q, of triangles seen along C = `from_origin`.
+    /// p, of triangles seen along C = `from_origin` in a leaf with these words.
     #[inline(always)]
-    pub(super) fn noise<L: Lanes>(&self, l: L, [x, y, z]: Vectors<L>) -> L::F {
+    pub(super) fn noise<L: Lanes>(&self, l: L, words: &[f32], from_origin: Vectors<L>) -> L::F {
+        let [x, y, z] = from_origin;
         let c = l.max(l.abs(x), l.max(l.abs(y), l.abs(z)));
-        l.mul_add(c, l.splat(128.0 * U), l.splat(16.0 * U * self.reach))
+        let of_ray = l.mul_add(c, l.splat(128.0 * U), l.splat(16.0 * U * self.reach));
+        l.add(of_ray, l.splat(words[1]))
     }
 
-    /// Of triangles with the longest edge component `s` and `noise` q.
+    /// Of triangles with `noise` p.
     #[inline(always)]
-    pub(super) fn of<L: Lanes>(&self, l: L, s: f32, noise: L::F) -> TriangleBounds<L::F> {
-        let with_size = l.add(noise, l.splat(64.0 * U * s));
+    pub(super) fn of<L: Lanes>(&self, l: L, words: &[f32], noise: L::F) -> TriangleBounds<L::F> {
+        let scale = self.length * words[0];
         TriangleBounds {
-            e: l.mul(with_size, l.splat(self.length * s)),
-            e_t: l.mul(noise, l.splat(0.5 * s * s)),
-            e_det: l.splat(self.length * s * (64.0 * U * s)),
-            e_behind: l.mul(with_size, l.splat(s * s)),
+            e: l.mul(noise, l.splat(scale)),
+            e_behind: l.mul(noise, l.splat(words[2])),
+            e_det: l.splat(scale * words[1]),
         }
     }
 }
@@ -169,7 +169,7 @@ impl<F: Copy> Filtered<F> {
         let det = l.abs(det);
         let inside = l.min(u, l.min(v, l.sub(l.sub(det, u), v)));
         let det_most = l.add(det, bounds.e_det);
-        let before_max = l.add(l.mul_sub(max, det_most, t), bounds.e_t);
+        let before_max = l.add(l.mul_sub(max, det_most, t), bounds.e_behind);
         let worst = l.min(l.add(inside, bounds.e), l.min(l.add(t, bounds.e_behind), before_max));
         let kept = l.at_least(worst, l.splat(0.0)) & valid;
         Self { kept, inside, t, det, det_most, bounds }
@@ -179,15 +179,14 @@ impl<F: Copy> Filtered<F> {
     #[inline(always)]
     pub(super) fn certain<L: Lanes<F = F>>(&self, l: L, min: f32) -> (u32, F, F) {
         let Self { kept, inside, t, det, det_most, bounds } = *self;
+        let e_t = l.mul(bounds.e_behind, l.splat(0.5));
         // The quotients round too.
-        let lowest =
-            l.mul(l.div(l.sub(t, bounds.e_t), det_most), l.splat(1.0 - 4.0 * f32::EPSILON));
+        let lowest = l.mul(l.div(l.sub(t, e_t), det_most), l.splat(1.0 - 4.0 * f32::EPSILON));
         let det_least = l.sub(det, bounds.e_det);
-        let highest =
-            l.mul(l.div(l.add(t, bounds.e_t), det_least), l.splat(1.0 + 4.0 * f32::EPSILON));
+        let highest = l.mul(l.div(l.add(t, e_t), det_least), l.splat(1.0 + 4.0 * f32::EPSILON));
         let certain = kept
             & l.above(inside, bounds.e)
-            & l.above(t, bounds.e_t)
+            & l.above(t, e_t)
             & l.above(det_least, bounds.e_det)
             & l.above(lowest, l.splat(min));
         (certain, lowest, highest)

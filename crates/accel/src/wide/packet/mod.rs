@@ -10,7 +10,7 @@ use smallvec::SmallVec;
 use super::collapse::WIDTH;
 use super::lanes::{Lanes, Vectors, cross, dot, splat3, sub3};
 use super::walk::{self, Bounds, Filtered, MOST_PENDING, Stack, TriangleBounds, child, near};
-use super::{Child, Node, Wide};
+use super::{Child, HEADER, Node, Wide};
 
 /// Rays of a packet at most: 8 × 8 pixels.
 const RAYS: usize = 64;
@@ -221,7 +221,7 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
         let l = self.lanes;
         let count = leaf.count();
         let words = &self.wide.leaves[leaf.offset()..];
-        let rows = l.rows::<9>(&words[1..], count);
+        let rows = l.rows::<9>(&words[HEADER..], count);
         let [p, q, w] = self.axes;
         let a = [rows[p], rows[q], rows[w]];
         let (e, f) =
@@ -233,8 +233,8 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
         let v = self.turned(cross(l, e, c));
         let det = self.turned(normal);
 
-        let noise = self.bounds.noise(l, c);
-        let bounds = self.bounds.of(l, words[0], noise);
+        let noise = self.bounds.noise(l, words, c);
+        let bounds = self.bounds.of(l, words, noise);
         let spread = Spread {
             middle: [l.splat(self.spread.middle[0]), l.splat(self.spread.middle[1])],
             half: [l.splat(self.spread.half[0]), l.splat(self.spread.half[1])],
@@ -257,7 +257,7 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
                 v: [rows[3][lane], rows[4][lane], rows[5][lane]],
                 det: [rows[6][lane], rows[7][lane], rows[8][lane]],
                 t: rows[9][lane],
-                bounds: self.bounds.of(l, words[0], l.splat(rows[10][lane])),
+                bounds: self.bounds.of(l, words, l.splat(rows[10][lane])),
                 record: Wide::record(leaf, lane),
             };
             let mut vectors = self.vectors_that_may_meet(&triangle);
