@@ -264,6 +264,12 @@ impl<'s> Wide<'s> {
         seen.all()
     }
 
+    /// The words of a leaf of triangles, as far as eight lanes of them are read at once.
+    #[inline(always)]
+    fn words(&self, leaf: Child) -> &[f32] {
+        &self.leaves[leaf.offset()..][..HEADER + 8 * leaf.count() + WIDTH]
+    }
+
     /// Where the record of a leaf's triangle begins, among all words.
     #[inline(always)]
     fn record(leaf: Child, lane: usize) -> u32 {

@@ -147,7 +147,7 @@ fn filter_first<L: Lanes>(lanes: L, wide: &Wide, ray: &Ray) -> Option<(FourSlabs
         let lane = wide.primitives(leaf).position(|id| id == PrimitiveId(0))?;
         Some((leaf, lane))
     })?;
-    let words = &wide.leaves[leaf.offset()..];
+    let words = wide.words(leaf);
     let filtered = wide_ray.filter(words, leaf.count(), f32::INFINITY);
     if filtered.kept >> lane & 1 == 0 {
         return None;

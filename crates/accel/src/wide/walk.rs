@@ -317,13 +317,12 @@ impl<'w, L: Lanes> Closest<'w, '_, L> {
     /// Sorts out the triangles of a leaf.
     #[inline(always)]
     fn visit(&mut self, leaf: Child) {
-        let wide = self.wide;
         if leaf.has_spheres() {
-            return wide.primitives(leaf).for_each(|sphere| self.test(|probe| probe.test(sphere)));
+            return self.visit_spheres(leaf);
         }
+        let wide = self.wide;
         let (lanes, ray) = (self.in_frame.lanes, &self.in_frame);
-        let words = &wide.leaves[leaf.offset()..];
-        let filtered = ray.filter(words, leaf.count(), self.max);
+        let filtered = ray.filter(wide.words(leaf), leaf.count(), self.max);
         if filtered.kept == 0 {
             return;
         }
@@ -337,9 +336,6 @@ impl<'w, L: Lanes> Closest<'w, '_, L> {
             for corner in wide.triangle(record).1 {
                 lanes.prefetch(&wide.scene.mesh.positions[corner]);
             }
-            if self.candidates.length == CANDIDATES {
-                self.decide();
-            }
             let is_certain = certain >> lane & 1 != 0;
             let what = if is_certain { record | CERTAIN } else { record };
             self.candidates.push(key(lowest[lane].max(0.0), what));
@@ -347,6 +343,11 @@ impl<'w, L: Lanes> Closest<'w, '_, L> {
                 self.max = self.max.min(highest[lane]);
             }
         }
+    }
+
+    #[inline(never)]
+    fn visit_spheres(&mut self, leaf: Child) {
+        self.wide.primitives(leaf).for_each(|sphere| self.test(|probe| probe.test(sphere)));
     }
 
     #[inline(always)]
@@ -403,6 +404,9 @@ pub(super) fn closest<L: Lanes, O: Observer>(
     loop {
         if next.is_leaf() {
             wide.watch_leaf(next, observer);
+            if walk.candidates.length > CANDIDATES - WIDTH {
+                walk.decide();
+            }
             let walk = &mut walk;
             lanes.apart(
                 #[inline(always)]
@@ -454,18 +458,15 @@ impl<L: Lanes> Any<'_, '_, L> {
     /// A primitive of a leaf that the ray meets, if there is one.
     #[inline(always)]
     fn visit(&self, leaf: Child) -> Option<PrimitiveId> {
-        let wide = self.wide;
         if leaf.has_spheres() {
-            let mut probe = Probe::new(wide.scene, self.ray, self.range);
-            return wide.primitives(leaf).find(|&primitive| probe.test(primitive));
+            return self.test(leaf, 0);
         }
+        let wide = self.wide;
         let (lanes, ray) = (self.in_frame.lanes, &self.in_frame);
-        let words = &wide.leaves[leaf.offset()..];
-        let filtered = ray.filter(words, leaf.count(), self.max);
+        let filtered = ray.filter(wide.words(leaf), leaf.count(), self.max);
         if filtered.kept == 0 {
             return None;
         }
-        let record = |lane: usize| Wide::record(leaf, lane);
         let (mut certain, _, highest) = filtered.certain(lanes, ray.least(self.range));
         let highest = lanes.store(highest);
         let surely_before = ray.slabs.parameter_below(self.range.max);
@@ -473,16 +474,26 @@ impl<L: Lanes> Any<'_, '_, L> {
             let lane = certain.trailing_zeros() as usize % WIDTH;
             certain &= certain - 1;
             if highest[lane] < surely_before {
-                return Some(wide.triangle(record(lane)).0);
+                return Some(wide.triangle(Wide::record(leaf, lane)).0);
             }
         }
+        self.test(leaf, filtered.kept)
+    }
+
+    /// Lets `f64` decide on what the filter kept of a leaf, or on its spheres. Called last, it costs those
+    /// leaves nothing that do not need it.
+    #[inline(never)]
+    fn test(&self, leaf: Child, mut kept: u32) -> Option<PrimitiveId> {
+        let wide = self.wide;
         let mut probe = Probe::new(wide.scene, self.ray, self.range);
-        let mut kept = filtered.kept;
+        if leaf.has_spheres() {
+            return wide.primitives(leaf).find(|&primitive| probe.test(primitive));
+        }
         while kept != 0 {
-            let lane = kept.trailing_zeros() as usize % WIDTH;
+            let record = Wide::record(leaf, kept.trailing_zeros() as usize % WIDTH);
             kept &= kept - 1;
-            if wide.test(&mut probe, record(lane)) {
-                return Some(wide.triangle(record(lane)).0);
+            if wide.test(&mut probe, record) {
+                return Some(wide.triangle(record).0);
             }
         }
         None

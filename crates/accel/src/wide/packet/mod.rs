@@ -220,7 +220,7 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
         self.spent += 2;
         let l = self.lanes;
         let count = leaf.count();
-        let words = &self.wide.leaves[leaf.offset()..];
+        let words = self.wide.words(leaf);
         let rows = l.rows::<9>(&words[HEADER..], count);
         let [p, q, w] = self.axes;
         let a = [rows[p], rows[q], rows[w]];
