@@ -18,7 +18,9 @@ const VECTORS: usize = RAYS / WIDTH;
 /// A packet pays where a triangle is at least this part of the packet wide.
 const WIDEST: f64 = 0.25;
 /// With more work than this each ray goes alone: about what all of them cost alone.
-const MOST_WORK: usize = 8 * RAYS;
+const MOST_WORK: usize = 16 * RAYS;
+/// So many packets go alone without being asked after one that did not pay.
+const PAUSE: usize = 3;
 /// Hits that cannot be told apart in `f32`, at most; with more of them each ray goes alone.
 const DOUBTS: usize = 256;
 
@@ -32,10 +34,16 @@ pub(super) fn closest<L: Lanes>(
     hits: &mut [Option<Hit>],
 ) {
     let mut packet = Packet::new(lanes, wide, range);
+    let mut pause = 0;
     for (rays, hits) in rays.chunks(RAYS).zip(hits.chunks_mut(RAYS)) {
-        if packet.aim(rays) && packet.pays() && packet.walk() {
-            packet.answer(hits);
-            continue;
+        if pause == 0 {
+            if packet.aim(rays) && packet.pays() && packet.walk() {
+                packet.answer(hits);
+                continue;
+            }
+            pause = PAUSE;
+        } else {
+            pause -= 1;
         }
         for (ray, hit) in rays.iter().zip(hits) {
             *hit = walk::closest(lanes, wide, ray, range, &mut ());
