@@ -1,9 +1,8 @@
 //! From the filter's findings to hits.
 
 use glam::DVec3;
-use lancer_core::geometry::{Axis, Shear, solve_triangle};
+use lancer_core::geometry::{Axis, Real, Shear, solve_triangle};
 use lancer_core::intersector::{Hit, Probe};
-use lancer_core::scene::PrimitiveId;
 
 use super::super::collapse::WIDTH;
 use super::super::lanes::Lanes;
@@ -47,40 +46,38 @@ impl<L: Lanes> Packet<'_, '_, L> {
 
     /// The hits of four rays that surely meet their best triangles.
     #[inline(always)]
-    fn solve(&self, rays: [usize; 4], hits: &mut [Option<Hit>]) {
+    fn solve(&self, [i, j, k, m]: [usize; 4], hits: &mut [Option<Hit>]) {
         let (l, wide) = (self.lanes, self.wide);
-        let axis = Axis::longest(self.rays[rays[0]].direction);
-        let mut alike = true;
-        let mut ids = [PrimitiveId(0); 4];
-        let mut direction = [[0.0; 4]; 3];
-        let mut corners = [[[0.0; 4]; 3]; 3];
-        for (lane, k) in rays.into_iter().enumerate() {
-            let ray = &self.rays[k];
-            alike &= Axis::longest(ray.direction) == axis;
-            let (id, indices) = wide.triangle(self.best[k / WIDTH][k % WIDTH]);
-            ids[lane] = id;
-            scatter(ray.direction, lane, &mut direction);
-            for (corner, index) in corners.iter_mut().zip(indices) {
-                scatter(wide.scene.mesh.positions[index], lane, corner);
-            }
-        }
-        if !alike {
-            for k in rays {
-                let mut probe = Probe::new(wide.scene, &self.rays[k], self.range);
-                wide.solve(&mut probe, self.best[k / WIDTH][k % WIDTH]);
+        let rays = self.rays;
+        let best = |k: usize| self.best[k / WIDTH][k % WIDTH];
+        let axis = Axis::longest(rays[i].direction);
+        if [j, k, m].iter().any(|&k| Axis::longest(rays[k].direction) != axis) {
+            for k in [i, j, k, m] {
+                let mut probe = Probe::new(wide.scene, &rays[k], self.range);
+                wide.solve(&mut probe, best(k));
                 hits[k] = probe.best();
             }
             return;
         }
-        let origin = self.rays[rays[0]].origin.to_array();
-        let [a, b, c] = corners;
-        let corners = [relative(l, a, origin), relative(l, b, origin), relative(l, c, origin)];
-        let [x, y, z] = direction;
-        let shear = Shear::along(axis, [l.four(x), l.four(y), l.four(z)]);
+        let origin = gather(l, [rays[i].origin; 4]);
+        let triangle = |k: usize| wide.triangle(best(k));
+        // One by one: what maps an array is not sure to be inlined.
+        let (of_i, of_j, of_k, of_m) = (triangle(i), triangle(j), triangle(k), triangle(m));
+        let ([a, b, c], [d, e, f]) = (wide.corners(of_i.1), wide.corners(of_j.1));
+        let ([g, h, n], [p, q, r]) = (wide.corners(of_k.1), wide.corners(of_m.1));
+        let corners = [
+            relative(gather(l, [a, d, g, p]), origin),
+            relative(gather(l, [b, e, h, q]), origin),
+            relative(gather(l, [c, f, n, r]), origin),
+        ];
+        let directions =
+            [rays[i].direction, rays[j].direction, rays[k].direction, rays[m].direction];
+        let ids = [of_i.0, of_j.0, of_k.0, of_m.0];
+        let shear = Shear::along(axis, gather(l, directions));
         let (t, [u, v, w]) = solve_triangle(corners, &shear);
         let (t, u, v, w) = (l.numbers(t), l.numbers(u), l.numbers(v), l.numbers(w));
-        for (lane, k) in rays.into_iter().enumerate() {
-            let mut probe = Probe::new(wide.scene, &self.rays[k], self.range);
+        for (lane, k) in [i, j, k, m].into_iter().enumerate() {
+            let mut probe = Probe::new(wide.scene, &rays[k], self.range);
             let barycentric = DVec3::new(u[lane], v[lane], w[lane]);
             probe.keep(Hit { t: t[lane], primitive: ids[lane], barycentric });
             hits[k] = probe.best();
@@ -88,16 +85,13 @@ impl<L: Lanes> Packet<'_, '_, L> {
     }
 }
 
-/// Puts a vector's components into a lane of each.
+/// The components of four vectors.
 #[inline(always)]
-fn scatter(vector: DVec3, lane: usize, components: &mut [[f64; 4]; 3]) {
-    let [x, y, z] = components;
-    (x[lane], y[lane], z[lane]) = (vector.x, vector.y, vector.z);
+fn gather<L: Lanes>(l: L, [a, b, c, d]: [DVec3; 4]) -> [L::D; 3] {
+    [l.four([a.x, b.x, c.x, d.x]), l.four([a.y, b.y, c.y, d.y]), l.four([a.z, b.z, c.z, d.z])]
 }
 
-/// Four points relative to the packet's origin.
 #[inline(always)]
-fn relative<L: Lanes>(l: L, [x, y, z]: [[f64; 4]; 3], origin: [f64; 3]) -> [L::D; 3] {
-    let [ox, oy, oz] = origin;
-    [l.four(x) - l.four([ox; 4]), l.four(y) - l.four([oy; 4]), l.four(z) - l.four([oz; 4])]
+fn relative<T: Real>([x, y, z]: [T; 3], [ox, oy, oz]: [T; 3]) -> [T; 3] {
+    [x - ox, y - oy, z - oz]
 }
