@@ -40,7 +40,7 @@ pub const STRUCTURES: [Structure; 9] = [
     },
     Structure {
         name: "wide",
-        bytes_per_primitive: 55,
+        bytes_per_primitive: 68,
         build: |scene| Built::new(Wide::build(scene), Wide::memory),
     },
     Structure {

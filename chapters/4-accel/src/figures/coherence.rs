@@ -145,8 +145,7 @@ pub fn make(effort: Effort) -> Finished {
         .note("Times faster", format!("primary rays together: {}", gains.collect::<Vec<_>>().join(", ")))
         .note("Together", format!(
             "{BATCH} rays are handed to `wide` at once. Those of one origin that go about the same way are walked 64 \
-             at a time, unless the triangles are small against them; all others one by one, and gain only that the \
-             vector code is entered once for many"
+             at a time, unless the triangles are small against them; all others one by one"
         ))
         .note("Boxes", format!(
             "asked by at least one ray of a group, divided by the rays of the group, at {} triangles; rays in the \
