@@ -176,6 +176,77 @@ fn on_degenerate_sets() {
     }
 }
 
+/// Rays of which `f64`, and more so `f32`, can hardly say where they go: from so far away, or of such a direction,
+/// that something under- or overflows. (In a scene some 1e-107 large the products of the triangle test itself
+/// are denormal, and hits lie beside their triangles: no index promises to find those.)
+#[test]
+fn extreme_rays_get_the_answer_of_brute_force() {
+    let extreme = [5e-324, 1e-310, 1e-300, 1e-40, 1e20, 1e34, 1e60, 1e150, 1e160, 1e300];
+    let directions =
+        [DVec3::X, DVec3::new(1.0, 0.5, -0.3), DVec3::new(1.0, -0.0, 1e-30), DVec3::NEG_Z];
+    for scale in [1.0, 1e12, 1e-30, 1e-100, 1e-310, 1e154] {
+        let mut mesh = icosphere(1);
+        for position in &mut mesh.positions {
+            *position *= scale;
+        }
+        let scene = Scene::of_mesh(mesh);
+        let oracle = LinearScan::new(&scene);
+        let inside = scale * DVec3::new(0.05, 0.11, 0.17);
+        let mut rays = Vec::new();
+        for direction in directions {
+            for size in extreme {
+                rays.push(Ray::new(inside, size * direction));
+                rays.push(Ray::new(inside - size * direction, direction));
+                rays.push(Ray::new(inside - size * scale * direction, size * direction));
+            }
+        }
+        let wanted: Vec<_> =
+            rays.iter().map(|ray| oracle.closest_hit(ray, Interval::POSITIVE)).collect();
+        for (name, index) in indexes(&scene) {
+            for (ray, wanted) in rays.iter().zip(&wanted) {
+                let got = index.closest_hit(ray, Interval::POSITIVE);
+                assert_eq!(got, *wanted, "{name}: {scale} {ray:?}");
+                let occluded = index.occluded(ray, Interval::POSITIVE);
+                assert_eq!(occluded, wanted.is_some(), "{name}: {scale} {ray:?}");
+            }
+            let mut got = vec![None; rays.len()];
+            index.closest_hits(&rays, Interval::POSITIVE, &mut got);
+            assert_eq!(got, wanted, "{name}: {scale}, together");
+        }
+    }
+}
+
+/// Among the rays of a packet some are no rays: the others get their answers, and so do later packets.
+#[test]
+fn rays_beside_invalid_ones_are_answered() {
+    let scene = Scene::of_mesh(icosphere(2));
+    let oracle = LinearScan::new(&scene);
+    let origin = DVec3::new(0.01, 0.02, -3.0);
+    let direction = |k: usize| {
+        DVec3::new(0.02 * ((k % 8) as f64 - 3.5), 0.02 * ((k / 8 % 8) as f64 - 3.5), 1.0)
+    };
+    let bad = [0.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+    for (value, place) in bad.into_iter().flat_map(|value| [(value, 0), (value, 63), (value, 120)])
+    {
+        for axes in [&[0][..], &[1], &[2], &[0, 1, 2]] {
+            // The last packet is smaller than those before it.
+            let mut rays: Vec<Ray> =
+                (0..5 * 64 - 8).map(|k| Ray::new(origin, direction(k))).collect();
+            for &axis in axes {
+                rays[place].direction[axis] = value;
+            }
+            let wanted: Vec<_> =
+                rays.iter().map(|ray| oracle.closest_hit(ray, Interval::POSITIVE)).collect();
+            assert!(wanted.iter().flatten().count() > 300);
+            for (name, index) in indexes(&scene) {
+                let mut got = vec![None; rays.len()];
+                index.closest_hits(&rays, Interval::POSITIVE, &mut got);
+                assert_eq!(got, wanted, "{name}: {value} at {place}, {axes:?}");
+            }
+        }
+    }
+}
+
 /// A ray that is no ray meets nothing, and nothing panics.
 #[test]
 fn invalid_rays_meet_nothing() {
@@ -191,6 +262,12 @@ fn invalid_rays_meet_nothing() {
             rays.push(Ray::new(origin, DVec3::X));
             direction[axis] = value;
             rays.push(Ray::new(DVec3::splat(0.1), direction));
+            for other in bad {
+                let mut both = direction;
+                both[(axis + 1) % 3] = other;
+                rays.push(Ray::new(DVec3::splat(0.1), both));
+                rays.push(Ray::new(DVec3::splat(0.1), DVec3::new(value, other, value)));
+            }
         }
     }
     for ray in rays {

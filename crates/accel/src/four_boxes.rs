@@ -86,17 +86,27 @@ impl FrameBox {
 pub struct Frame {
     center: DVec3,
     pub(crate) to_unit: f64,
+    /// What [`FourSlabs`] call `moved` at least: as if from afar where `f64` itself under- or overflows, so that
+    /// no hit is certain.
+    pub(crate) moved: f32,
 }
+
+/// Sizes of scenes, and their inverses, of which products of six coordinates are still numbers.
+const ORDINARY: f64 = 1e-50;
+/// The distance of which that is the rounding: beyond what any index calls near.
+const DOUBTFUL: f64 = 32.0;
 
 impl Frame {
     /// The frame of a scene within `bounds`.
     pub fn of(bounds: Bounds3) -> Self {
         if bounds.is_empty() {
-            return Self { center: DVec3::ZERO, to_unit: 1.0 };
+            return Self { center: DVec3::ZERO, to_unit: 1.0, moved: 0.0 };
         }
         let extent = (bounds.max - bounds.min).max_element() * 0.5;
-        let to_unit = if extent > 0.0 { extent.recip() } else { 1.0 };
-        Self { center: bounds.center(), to_unit }
+        let to_unit = if extent > 0.0 { extent.recip().min(1e300) } else { 1.0 };
+        let is_ordinary = (ORDINARY..=ORDINARY.recip()).contains(&to_unit);
+        let moved = if is_ordinary { 0.0 } else { rounding_at(DOUBTFUL) };
+        Self { center: bounds.center(), to_unit, moved }
     }
 
     /// A point in this frame.
@@ -156,6 +166,11 @@ pub struct FourSlabs {
     skipped: f64,
 }
 
+/// The rounding of what is so far away, finite.
+fn rounding_at(distance: f64) -> f32 {
+    ((8.0 * f64::EPSILON * distance) as f32).min(FARTHEST)
+}
+
 /// A ray far from a frame, moved close to it: see [`FourSlabs`].
 struct Placed {
     origin: DVec3,
@@ -174,18 +189,36 @@ impl Placed {
         let origin = frame.point(ray.origin);
         let longest = ray.direction.abs().max_element();
         let direction = ray.direction / longest;
-        let away = origin.length();
-        let skipped = if away < 2.0 { 0.0 } else { (away - 2.0) / direction.length() };
+        let farthest = origin.abs().max_element().max(1.0);
+        let away = farthest * (origin / farthest).length();
+        let away = if away.is_finite() { away } else { f64::INFINITY };
+        // From a distance that is no number any more all boxes are let in.
+        let is_moved = away >= 2.0 && away.is_finite();
+        let skipped = if is_moved { (away - 2.0) / direction.length() } else { 0.0 };
+        // What `f64` makes of a direction of extreme length is not known here, nor what of NaN and infinity.
+        let is_ordinary = ray.direction.is_finite()
+            && longest > f64::from(LONG.recip())
+            && longest < f64::from(LONG);
+        let doubt = if is_ordinary { away } else { away.max(DOUBTFUL) };
         Self {
-            origin: origin + skipped * direction,
-            direction,
-            moved: (8.0 * f64::EPSILON * away) as f32,
+            origin: (origin + skipped * direction).map(finite),
+            direction: direction.map(finite),
+            moved: rounding_at(doubt),
             per_unit: frame.to_unit * longest,
             skipped,
         }
     }
 }
 
+/// A coordinate of a ray that is moved, as a number whose products with all others are numbers. A ray that is
+/// still so far from the scene misses it.
+fn finite(x: f64) -> f64 {
+    let limit = f64::from(FARTHEST) * 0.1;
+    if x.is_nan() { 0.0 } else { x.clamp(-limit, limit) }
+}
+
+/// The farthest that a ray is moved aside: times the inverse of [`TINY`] it is still a number of 32 bits.
+const FARTHEST: f32 = 1e18;
 /// Components of a direction below this count as this; the largest is at least 2³⁰ times as long.
 const TINY: f32 = 1e-20;
 /// An origin with a coordinate beyond this is far, a direction with a component beyond this, or none above its
@@ -206,11 +239,11 @@ impl FourSlabs {
             && length.cmpgt(Vec3A::splat(LONG.recip())).any();
         // The usual case stays in registers.
         let (origin, direction, moved, per_unit, skipped) = if is_near {
-            (origin, direction, 0.0, frame.to_unit, 0.0)
+            (origin, direction, frame.moved, frame.to_unit, 0.0)
         } else {
             let Placed { origin, direction, moved, per_unit, skipped } =
                 Placed::from_afar(ray, frame);
-            (origin.as_vec3a(), direction.as_vec3a(), moved, per_unit, skipped)
+            (origin.as_vec3a(), direction.as_vec3a(), moved.max(frame.moved), per_unit, skipped)
         };
 
         let inverse = direction.abs().max(Vec3A::splat(TINY)).copysign(direction).recip();
@@ -252,7 +285,6 @@ impl FourSlabs {
             let negative = (self.negative >> axis & 1) as usize;
             let first = boxes.planes[axis][negative];
             let last = boxes.planes[axis][1 - negative];
-            // In this order a NaN, of an invalid ray, is kept and ends as a miss.
             near = near.max(first * self.inverse[axis] + self.near_offset[axis]);
             far = far.min(last * self.inverse[axis] + self.far_offset[axis]);
         }

@@ -232,7 +232,7 @@ impl<'s> Probe<'s> {
         Self { scene, ray, range, shear: None, best: None }
     }
 
-    /// Tests one primitive and keeps it if it wins. Returns whether it was met at all.
+    /// Tests one primitive and keeps it if it wins. Returns whether it does.
     #[inline(always)]
     pub fn test(&mut self, primitive: PrimitiveId) -> bool {
         let index = primitive.0 as usize;

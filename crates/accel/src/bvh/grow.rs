@@ -159,8 +159,11 @@ impl Cut {
     /// The cheapest: between neighbours in the order of centres along an axis, where centres coincide of ids.
     #[inline(never)] // As `best_plane`.
     fn best(items: &[Item]) -> Self {
-        let mut best =
-            Self { order: std::array::from_fn(|k| k as u8), left: 0, cost: f32::INFINITY };
+        let mut best = Self {
+            order: std::array::from_fn(|k| k as u8),
+            left: items.len() / 2,
+            cost: f32::INFINITY,
+        };
         // Two are cut between them whatever the axis.
         for axis in 0..if items.len() == 2 { 1 } else { 3 } {
             // As integers the centres' bits are in the order of numbers, or in the opposite if negative.

@@ -30,7 +30,7 @@ use lanes::avx2::Avx2;
 ///                     a.x [n] a.y [n] a.z [n]   one corner
 ///                     e.x [n] e.y [n] e.z [n]   from the second to it
 ///                     f.x [n] f.y [n] f.z [n]   from it to the third
-///                     (id, corners [3]) [n]     what f64 will read; 53 bytes a triangle at n = 8
+///                     (id, corners [3]) [n]     what f64 will read; 54 bytes a triangle at n = 8
 /// ```
 ///
 /// All coordinates are those of the scene's own frame, [−1, 1]³: `f32` keeps its digits wherever the scene
@@ -46,6 +46,9 @@ use lanes::avx2::Avx2;
 ///   the ray at once, and a shadow ray ends there without any `f64`.
 /// - `f64` decides among the few that are left, at the end of the walk; what it will read is fetched when
 ///   the filter keeps it. The answer is that of [`lancer_core::intersector::LinearScan`], bit for bit.
+/// - What a leaf needs, and what `f64` needs, is compiled apart from the walk through the nodes: most rays meet
+///   few leaves, and should not pay for them in registers. A certain hit is solved for t without the checks
+///   that it is known to pass.
 /// - Rays of one origin are walked as a packet, [`Intersector::closest_hits`]; what that gains is plate 4.9's.
 ///
 /// # The bounds
@@ -75,14 +78,16 @@ use lanes::avx2::Avx2;
 /// so with p = u (16 D + 128 c + 64 s), e = δ s p, e_Δ = 64 u s² δ and e_T = s² p / 2 whatever has
 /// U, V, W ≥ 0 is kept by U, V, W ≥ −e, and U, V, W > e, T > e_T, |Δ| > 2 e_Δ imply a true hit. All four are
 /// turned by the sign of Δ, which is wrong only where |Δ| ≤ 48 u s² δ. Then a true hit has U and V no larger
-/// than that, which e covers, and T = t Δ no larger than 48 u s² (c + s), since no point of the triangle is
-/// farther than c + s: so T is kept from −2 e_T on. The part
+/// than that, which e covers (and W = |Δ| + U + V), and T = t Δ no larger than 48 u s² (c + s), since no point
+/// of the triangle is farther than c + s: so T is kept from −2 e_T on. The part
 /// with c lets what is near be small: a teapot in a stadium is told apart from its neighbours' triangles.
 ///
-/// The slack beyond first order, and the noise of the `f64` test (2⁻²⁹ of the above in U, V, W; its own bound
-/// on t is below 60 · 2⁻⁵³ D² s / Δ) are covered because s is at least 2⁻²⁰ and D at most 17: of e_T a
-/// part of 2 u s² D is free. An origin beyond 8 is moved close to the scene, which adds its rounding to D;
-/// from beyond 16 no hit is called certain.
+/// The slack beyond first order, and the noise of the `f64` test (2⁻²⁹ of the above in U, V, W; of t its own
+/// bound dt, below which it refuses, is at most 240 · 2⁻⁵³ c² s / Δ) are covered because s is at least 2⁻²⁰:
+/// of e_T a part of u s² (2 D + 16 c + 32 s) is free, four times dt where c ≤ 10. An origin beyond 8 is moved
+/// close to the scene, which adds its rounding to D; then t is at least 7 / δ, above dt since |Δ| > 2 e_Δ. From
+/// beyond 16, of directions of extreme length and in scenes of extreme size, where `f64` itself under- or
+/// overflows, no hit is called certain.
 pub struct Wide<'s> {
     scene: &'s Scene,
     frame: Frame,
@@ -103,7 +108,7 @@ const HEADER: usize = 3;
 const RECORD: usize = 4;
 
 /// An integer among the words of a leaf. Where it is read as a number, for the sake of its neighbours, it is
-/// one of at least 2: computing with denormal ones is slow.
+/// never a denormal one: computing with those is slow.
 ///
 /// # Panics
 /// If it is 2³⁰ or more.
@@ -169,7 +174,7 @@ impl Child {
     }
 
     /// # Panics
-    /// If the words are too many: 2 GiB of them, some 50 million triangles.
+    /// If the words are too many: 2 GiB of them, some 35 million triangles.
     fn leaf(offset: usize, count: usize, spheres: bool) -> Self {
         let unit = (offset / UNIT) as u32;
         assert!(offset / UNIT < 1 << 27, "the leaves of `wide` take no more than 2 GiB");

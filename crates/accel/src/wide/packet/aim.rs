@@ -1,7 +1,7 @@
 //! From rays to a packet.
 
 use glam::DVec3;
-use lancer_core::geometry::{Ray, Real};
+use lancer_core::geometry::{Axis, Ray, Real};
 
 use super::super::collapse::WIDTH;
 use super::super::lanes::{Lanes, least, most};
@@ -21,27 +21,21 @@ impl<'p, L: Lanes> Packet<'p, '_, L> {
         let frame = &self.wide.frame;
         let origin = frame.point(first.origin);
         let direction = first.direction.to_array();
-        let size = direction.map(f64::abs);
-        let last = if size[0] > size[1] && size[0] > size[2] {
-            0
-        } else if size[1] > size[2] {
-            1
-        } else {
-            2
-        };
+        let last = Axis::longest(first.direction) as usize;
         let axes = [(last + 1) % 3, (last + 2) % 3, last];
         let sign = direction[last].signum();
-        let is_near = origin.abs().max_element() <= FARTHEST;
+        let is_near = origin.abs().max_element() <= FARTHEST && frame.moved == 0.0;
         if self.wide.nodes.is_empty() || !self.wide.scene.spheres.is_empty() || !is_near {
             return false;
         }
 
         let l = self.lanes;
         self.valid = [0; VECTORS];
+        self.max = [[0.0; WIDTH]; VECTORS];
         let differs = rays.iter().fold(0, |bits, ray| bits | difference(ray.origin, first.origin));
         let mut alike = differs == 0;
         let (mut low, mut high) = ([l.splat(STEEPEST); 2], [l.splat(-STEEPEST); 2]);
-        let (mut along_least, mut along_most) = (l.splat(f32::INFINITY), l.splat(0.0));
+        let mut along_most = l.splat(0.0);
         let mut farthest = l.splat(0.0);
         // A parameter is rounded up when it becomes an `f32`.
         let end = self.range.max * frame.to_unit * (1.0 + f64::from(f32::EPSILON));
@@ -54,13 +48,13 @@ impl<'p, L: Lanes> Packet<'p, '_, L> {
             let slopes = [l.narrow(p0, p1), l.narrow(q0, q1)];
             let along = l.narrow(along0, along1);
             // Accepting comparisons: NaN is none of it.
-            alike &= l.at_least(l.splat(STEEPEST), l.max(l.abs(slopes[0]), l.abs(slopes[1])))
+            alike &= l.at_least(l.splat(STEEPEST), l.abs(slopes[0]))
+                & l.at_least(l.splat(STEEPEST), l.abs(slopes[1]))
                 & l.above(along, l.splat(1e-9))
                 == 0xff;
-            along_least = l.min(along_least, along);
             along_most = l.max(along_most, along);
             let max = l.narrow(along0 * end, along1 * end);
-            farthest = l.max(farthest, max);
+            farthest = l.max(max, farthest);
             self.max[vector] = l.store(max);
             for axis in [0, 1] {
                 let (of_low, of_high) = (least(l, slopes[axis]), most(l, slopes[axis]));

@@ -282,7 +282,7 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
         if found {
             let mut most = l.splat(0.0);
             for max in &self.max {
-                most = l.max(most, l.load(max));
+                most = l.max(l.load(max), most);
             }
             self.farthest = l.store(most).into_iter().fold(0.0, f32::max);
         }
