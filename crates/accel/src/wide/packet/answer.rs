@@ -32,15 +32,16 @@ impl<L: Lanes> Packet<'_, '_, L> {
                 count += 1;
             }
         }
-        let mut rest = &certain[..count];
-        while let [a, b, c, d, after @ ..] = rest {
-            self.solve([*a, *b, *c, *d], hits);
-            rest = after;
-        }
-        // The last ones as often as it takes.
-        if let [first, others @ ..] = rest {
-            let other = |k: usize| others.get(k).copied().unwrap_or(*first);
-            self.solve([*first, other(0), other(1), other(2)], hits);
+        for four in certain[..count].chunks(4) {
+            // Of fewer the last one as often as it takes.
+            let ray = |k: usize| four[k.min(four.len() - 1)];
+            let rays = [ray(0), ray(1), ray(2), ray(3)];
+            let (packet, hits) = (&*self, &mut *hits);
+            // Apart, so that it is optimised by itself.
+            self.lanes.apart(
+                #[inline(always)]
+                move |_| packet.solve(rays, hits),
+            );
         }
     }
 
