@@ -145,7 +145,7 @@ fn around_centers(items: &[Item]) -> FrameBox {
 
 /// So many items are sorted along each axis, and all cuts are compared: that is quicker than bins, most of
 /// which would be empty.
-const FEW: usize = 16;
+const FEW: usize = BINS;
 
 /// A cut of a few items into the `left` first ones of an order and the others.
 struct Cut {
@@ -175,21 +175,14 @@ impl Cut {
             }
             keys[..items.len()].sort_unstable_by_key(|&(key, _)| key);
             let order = keys.map(|(_, k)| k);
-            let content = |place: usize| Content {
-                bounds: items[usize::from(order[place])].bounds,
-                count: 1,
-            };
-            let mut right_of = [Content::NONE; FEW];
-            for k in (1..items.len()).rev() {
-                right_of[k - 1] = right_of[k].and(content(k));
+            let mut contents = [Content::NONE; FEW];
+            for (content, &k) in contents.iter_mut().zip(&order[..items.len()]) {
+                *content = Content { bounds: items[usize::from(k)].bounds, count: 1 };
             }
-            let mut left = Content::NONE;
-            for (last, right) in right_of[..items.len() - 1].iter().enumerate() {
-                left = left.and(content(last));
-                let cost = left.cost() + right.cost();
-                if cost < best.cost {
-                    best = Self { order, left: last + 1, cost };
-                }
+            if let Some((last, cost)) = cheapest_cut(&contents[..items.len()])
+                && cost < best.cost
+            {
+                best = Self { order, left: last + 1, cost };
             }
         }
         best
@@ -295,6 +288,28 @@ impl Plane {
     }
 }
 
+/// The last of the contents before the cheapest cut with items on both sides, and its cost.
+#[inline(always)]
+fn cheapest_cut(contents: &[Content]) -> Option<(usize, f32)> {
+    let mut right_of = [Content::NONE; BINS];
+    for k in (1..contents.len()).rev() {
+        right_of[k - 1] = right_of[k].and(contents[k]);
+    }
+    let mut best: Option<(usize, f32)> = None;
+    let mut left = Content::NONE;
+    for (last, (&content, right)) in contents.iter().zip(&right_of).enumerate() {
+        left = left.and(content);
+        if left.count == 0 || right.count == 0 {
+            continue;
+        }
+        let cost = left.cost() + right.cost();
+        if best.is_none_or(|best| cost < best.1) {
+            best = Some((last, cost));
+        }
+    }
+    best
+}
+
 /// The cheapest plane with items on both sides; there is none if all centres coincide.
 #[inline(never)] // The bins must not take room on the stack of the recursion.
 fn best_plane(items: &[Item]) -> Option<Plane> {
@@ -313,21 +328,10 @@ fn best_plane(items: &[Item]) -> Option<Plane> {
     }
     let mut best: Option<Plane> = None;
     for (axis, contents) in contents.iter().enumerate() {
-        let mut right_of = [Content::NONE; BINS];
-        for k in (1..BINS).rev() {
-            right_of[k - 1] = right_of[k].and(contents[k]);
-        }
-        let mut left = Content::NONE;
-        for last in 0..BINS - 1 {
-            left = left.and(contents[last]);
-            let right = right_of[last];
-            if left.count == 0 || right.count == 0 {
-                continue;
-            }
-            let cost = left.cost() + right.cost();
-            if best.as_ref().is_none_or(|best| cost < best.cost) {
-                best = Some(Plane { bins, axis, last, cost });
-            }
+        if let Some((last, cost)) = cheapest_cut(contents)
+            && best.as_ref().is_none_or(|best| cost < best.cost)
+        {
+            best = Some(Plane { bins, axis, last, cost });
         }
     }
     best

@@ -27,8 +27,8 @@ pub enum Split {
     /// C = 1 + (A(left) · n(left) + A(right) · n(right)) / A(node)
     /// is what the node costs after the split, and n(node) without. The centres are thrown into bins
     /// along each axis, and only the planes between bins are compared; and cuts between the large and
-    /// the small. Of a few primitives all cuts are. Source, but for those: Wald, *On fast Construction of SAH-based Bounding Volume
-    /// Hierarchies*, RT 2007.
+    /// the small. Of a few primitives all cuts are compared. Source, but for those: Wald, *On fast
+    /// Construction of SAH-based Bounding Volume Hierarchies*, RT 2007.
     #[default]
     Sah,
 }

@@ -1,7 +1,6 @@
 //! Eight `f32`, or four `f64`, at once: by AVX2 where the processor has it, and by a scalar twin everywhere.
 
-use std::ops::{Add, Mul, Sub};
-
+use glam::DVec4;
 use lancer_core::geometry::Real;
 
 /// A way to compute with eight numbers, or four, at once.
@@ -103,41 +102,6 @@ fn each<T, const N: usize>(f: impl FnMut(usize) -> T) -> [T; N] {
     std::array::from_fn(f)
 }
 
-/// Four `f64`, one after the other.
-#[derive(Clone, Copy)]
-pub(super) struct Four([f64; 4]);
-
-impl Add for Four {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, b: Self) -> Self {
-        Self(each(|k| self.0[k] + b.0[k]))
-    }
-}
-
-impl Sub for Four {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, b: Self) -> Self {
-        Self(each(|k| self.0[k] - b.0[k]))
-    }
-}
-
-impl Mul for Four {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, b: Self) -> Self {
-        Self(each(|k| self.0[k] * b.0[k]))
-    }
-}
-
-impl Real for Four {
-    #[inline(always)]
-    fn recip(self) -> Self {
-        Self(self.0.map(|x| 1.0 / x))
-    }
-}
-
 #[inline(always)]
 fn bits(f: impl Fn(usize) -> bool) -> u32 {
     (0..8).fold(0, |bits, lane| bits | u32::from(f(lane)) << lane)
@@ -145,7 +109,7 @@ fn bits(f: impl Fn(usize) -> bool) -> u32 {
 
 impl Lanes for Scalar {
     type F = [f32; 8];
-    type D = Four;
+    type D = DVec4;
 
     #[inline(always)]
     fn splat(self, x: f32) -> [f32; 8] {
@@ -233,18 +197,18 @@ impl Lanes for Scalar {
     }
 
     #[inline(always)]
-    fn four(self, x: [f64; 4]) -> Four {
-        Four(x)
+    fn four(self, x: [f64; 4]) -> DVec4 {
+        x.into()
     }
 
     #[inline(always)]
-    fn numbers(self, x: Four) -> [f64; 4] {
-        x.0
+    fn numbers(self, x: DVec4) -> [f64; 4] {
+        x.into()
     }
 
     #[inline(always)]
-    fn narrow(self, low: Four, high: Four) -> [f32; 8] {
-        each(|k| (if k < 4 { low.0[k] } else { high.0[k - 4] }) as f32)
+    fn narrow(self, low: DVec4, high: DVec4) -> [f32; 8] {
+        each(|k| (if k < 4 { low[k] } else { high[k - 4] }) as f32)
     }
 
     #[inline(always)]

@@ -347,40 +347,31 @@ impl<'w, L: Lanes> Closest<'w, '_, L> {
 
     #[inline(never)]
     fn visit_spheres(&mut self, leaf: Child) {
-        self.wide.primitives(leaf).for_each(|sphere| self.test(|probe| probe.test(sphere)));
-    }
-
-    #[inline(always)]
-    fn test(&mut self, test: impl FnOnce(&mut Probe) -> bool) {
         let probe = self.probe.get_or_insert(Probe::new(self.wide.scene, self.ray, self.range));
-        if test(probe) {
-            self.max = self.max.min(self.in_frame.slabs.parameter(probe.range().max));
+        for sphere in self.wide.primitives(leaf) {
+            if probe.test(sphere) {
+                self.max = self.max.min(self.in_frame.slabs.parameter(probe.range().max));
+            }
         }
     }
 
     /// Lets `f64` decide on the candidates. What came last is nearest more often than not.
-    #[inline(never)]
-    fn decide(&mut self) {
-        while let Some(candidate) = self.candidates.pop() {
-            if near(candidate) <= self.max {
-                let wide = self.wide;
-                self.test(|probe| decide(wide, probe, candidate));
-            }
-        }
-    }
-
-    /// The same at the end of the walk.
     #[inline(always)]
-    fn answer(&mut self) -> Option<Hit> {
-        let mut max = self.max;
+    fn decided(&mut self) -> Probe<'w> {
         let mut probe =
             self.probe.take().unwrap_or(Probe::new(self.wide.scene, self.ray, self.range));
         while let Some(candidate) = self.candidates.pop() {
-            if near(candidate) <= max && decide(self.wide, &mut probe, candidate) {
-                max = max.min(self.in_frame.slabs.parameter(probe.range().max));
+            if near(candidate) <= self.max && decide(self.wide, &mut probe, candidate) {
+                self.max = self.max.min(self.in_frame.slabs.parameter(probe.range().max));
             }
         }
-        probe.best()
+        probe
+    }
+
+    /// Makes room for more candidates.
+    #[inline(never)]
+    fn make_room(&mut self) {
+        self.probe = Some(self.decided());
     }
 }
 
@@ -405,7 +396,7 @@ pub(super) fn closest<L: Lanes, O: Observer>(
         if next.is_leaf() {
             wide.watch_leaf(next, observer);
             if walk.candidates.length > CANDIDATES - WIDTH {
-                walk.decide();
+                walk.make_room();
             }
             let walk = &mut walk;
             lanes.apart(
@@ -435,7 +426,7 @@ pub(super) fn closest<L: Lanes, O: Observer>(
                 let walk = &mut walk;
                 return lanes.apart(
                     #[inline(always)]
-                    move |_| walk.answer(),
+                    move |_| walk.decided().best(),
                 );
             };
             if near(entry) <= walk.max {

@@ -1,6 +1,6 @@
 use std::ops::{Add, Mul, Sub};
 
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 
 use super::{Ray, gamma};
 
@@ -14,6 +14,13 @@ impl Real for f64 {
     #[inline(always)]
     fn recip(self) -> Self {
         1.0 / self
+    }
+}
+
+impl Real for DVec4 {
+    #[inline(always)]
+    fn recip(self) -> Self {
+        Self::recip(self)
     }
 }
 

@@ -32,6 +32,8 @@ impl<'p, L: Lanes> Packet<'p, '_, L> {
         let l = self.lanes;
         self.valid = [0; VECTORS];
         self.max = [[0.0; WIDTH]; VECTORS];
+        // Vectors without rays meet nothing.
+        self.spreads = [[[f32::NAN; WIDTH]; 2]; 2];
         let differs = rays.iter().fold(0, |bits, ray| bits | difference(ray.origin, first.origin));
         let mut alike = differs == 0;
         let (mut low, mut high) = ([l.splat(STEEPEST); 2], [l.splat(-STEEPEST); 2]);

@@ -8,7 +8,7 @@ use lancer_core::intersector::Hit;
 use smallvec::SmallVec;
 
 use super::collapse::WIDTH;
-use super::lanes::{Lanes, Vectors, cross, dot, splat3, sub3};
+use super::lanes::{Lanes, Vectors, cross, dot, most, splat3, sub3};
 use super::walk::{self, Bounds, Filtered, MOST_PENDING, Stack, TriangleBounds, child, near};
 use super::{Child, HEADER, Node, Wide};
 
@@ -36,14 +36,13 @@ pub(super) fn closest<L: Lanes>(
     let mut packet = Packet::new(lanes, wide, range);
     let mut pause = 0;
     for (rays, hits) in rays.chunks(RAYS).zip(hits.chunks_mut(RAYS)) {
-        if pause == 0 {
-            if packet.aim(rays) && packet.pays() && packet.walk() {
-                packet.answer(hits);
-                continue;
-            }
-            pause = PAUSE;
-        } else {
+        if pause > 0 {
             pause -= 1;
+        } else if packet.aim(rays) && packet.pays() && packet.walk() {
+            packet.answer(hits);
+            continue;
+        } else {
+            pause = PAUSE;
         }
         for (ray, hit) in rays.iter().zip(hits) {
             *hit = walk::closest(lanes, wide, ray, range, &mut ());
@@ -280,11 +279,11 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
             }
         }
         if found {
-            let mut most = l.splat(0.0);
+            let mut farthest = l.splat(0.0);
             for max in &self.max {
-                most = l.max(l.load(max), most);
+                farthest = l.max(l.load(max), farthest);
             }
-            self.farthest = l.store(most).into_iter().fold(0.0, f32::max);
+            self.farthest = most(l, farthest);
         }
         true
     }
