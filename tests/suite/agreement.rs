@@ -2,8 +2,8 @@
 //! aimed where indexes go wrong.
 
 use chapter_4::aimed::{CLASSES, aimed};
-use chapter_4::structures::STRUCTURES;
 use glam::DVec3;
+use lancer_accel::structures::STRUCTURES;
 use lancer_accel::{BinaryTree, Bvh, ObvhsBvh2, Split, Wide};
 use lancer_core::generate::{cube, icosphere};
 use lancer_core::geometry::{Interval, Ray, Sphere};

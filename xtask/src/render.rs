@@ -3,8 +3,8 @@ use std::str::FromStr;
 use std::time::Instant;
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
-use chapter_4::structures::STRUCTURES;
 use glam::DVec3;
+use lancer_accel::structures::STRUCTURES;
 use lancer_core::Rgb;
 use lancer_core::image::{ImageSize, check_target, save};
 use lancer_core::intersector::Intersector;

@@ -1,8 +1,8 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
-use chapter_4::structures::STRUCTURES;
 use lancer_accel::ObvhsBvh2;
+use lancer_accel::structures::STRUCTURES;
 use lancer_core::image::{ImageSize, check_writable, write_atomically};
 use lancer_core::scene::load::Loaded;
 use lancer_figure::Walk;

@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 
 use chapter_4::rays::Rays;
 use chapter_4::scenes::FAMILIES;
-use chapter_4::structures::{STRUCTURES, Structure};
 use criterion::{Criterion, Throughput};
+use lancer_accel::structures::{STRUCTURES, Structure};
 use lancer_core::image::ImageSize;
 use lancer_core::scene::{Scene, load};
 

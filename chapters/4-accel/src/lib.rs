@@ -8,5 +8,4 @@ pub mod naive;
 pub mod rays;
 pub mod scenes;
 pub mod step;
-pub mod structures;
 pub mod volumes;

@@ -251,6 +251,8 @@ fn surface([across, down]: [f64; 2], point: impl Fn(f64, f64) -> DVec3) -> Mesh 
 
 #[cfg(test)]
 mod tests {
+    use lancer_accel::structures::STRUCTURES;
+
     use super::*;
 
     #[test]
@@ -262,6 +264,20 @@ mod tests {
                 assert!((0.8..1.25).contains(&ratio), "{} {count}: {ratio}", family.name);
                 assert!(scene.camera.check().is_ok());
             }
+        }
+    }
+
+    /// What is said of an index's memory is what the worst kind of scene takes, within a quarter.
+    #[test]
+    fn indexes_take_the_memory_they_are_said_to_take() {
+        let scenes = FAMILIES.map(|family| family.scene(30_000));
+        for structure in STRUCTURES.into_iter().filter(|structure| structure.name != "linear") {
+            let parts = scenes.iter().map(|scene| {
+                let expected = structure.expected_bytes(scene.primitives().len());
+                (structure.build)(scene).bytes as f64 / expected as f64
+            });
+            let most = parts.fold(0.0, f64::max);
+            assert!((0.75..1.25).contains(&most), "{}: {most}", structure.name);
         }
     }
 }

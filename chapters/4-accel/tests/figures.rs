@@ -4,7 +4,7 @@
 
 use chapter_4::aimed::CLASSES;
 use chapter_4::figures::FIGURES;
-use chapter_4::structures::STRUCTURES;
+use lancer_accel::structures::STRUCTURES;
 use lancer_figure::{Figure, Record};
 
 /// The data of a figure whose claim holds on a legible plate.

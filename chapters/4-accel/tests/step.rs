@@ -3,9 +3,9 @@
 use chapter_4::scenes::{family, open};
 use chapter_4::step::record::{Event, Kind, Recorder};
 use chapter_4::step::{Request, walk};
-use chapter_4::structures::{STRUCTURES, Structure, structure};
 use glam::{DAffine3, DVec3};
 use insta::assert_snapshot;
+use lancer_accel::structures::{STRUCTURES, Structure, structure};
 use lancer_core::geometry::{Bounds3, Interval};
 use lancer_core::image::ImageSize;
 use lancer_core::intersector::{Intersector, LinearScan, TestCounts};

@@ -22,6 +22,7 @@ mod octree;
 mod pending;
 mod sah;
 mod spatial;
+pub mod structures;
 mod touching;
 mod wide;
 

@@ -18,7 +18,7 @@ use crate::aimed::{CLASSES, aimed};
 use crate::naive::{BareTree, LibraryWalk, first_hit_wins};
 use crate::rays::{Kind, Query, Rays};
 use crate::scenes::family;
-use crate::structures::{STRUCTURES, structure};
+use lancer_accel::structures::{STRUCTURES, structure};
 
 const NAIVE: [&str; 3] = ["boxes without a pad", "first hit in a cell wins", "obvhs' own f32 walk"];
 

@@ -10,7 +10,7 @@ use lancer_figure::{
 
 use crate::rays::Rays;
 use crate::scenes::FAMILIES;
-use crate::structures::Built;
+use lancer_accel::structures::Built;
 
 type Build = for<'s> fn(&'s Scene) -> Built<'s>;
 

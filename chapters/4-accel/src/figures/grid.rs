@@ -13,7 +13,7 @@ use lancer_figure::{
 use super::shaded;
 use crate::rays::Rays;
 use crate::scenes::family;
-use crate::structures::structure;
+use lancer_accel::structures::structure;
 
 /// Cells per primitive that are asked for.
 const DENSITIES: [f64; 10] = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];

@@ -10,7 +10,7 @@ use lancer_figure::{
 
 use super::shaded;
 use crate::scenes::family;
-use crate::structures::STRUCTURES;
+use lancer_accel::structures::STRUCTURES;
 
 /// What every pixel's ray met, and the work it took.
 fn watch(scene: &Scene, size: ImageSize, index: &dyn Observable) -> Vec<(Option<Hit>, TestCounts)> {

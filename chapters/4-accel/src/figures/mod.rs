@@ -22,7 +22,7 @@ use lancer_core::sampling::PixelSampling;
 use lancer_core::scene::{Camera, Scene};
 use lancer_figure::{Figure, Picture};
 
-use crate::structures::structure;
+use lancer_accel::structures::structure;
 
 /// All figures, in the lesson's order.
 pub const FIGURES: &[Figure] = &[

@@ -10,7 +10,7 @@ use lancer_figure::{
 
 use crate::rays::{Kind, Rays};
 use crate::scenes::{FAMILIES, Family};
-use crate::structures::{STRUCTURES, Structure};
+use lancer_accel::structures::{STRUCTURES, Structure};
 
 /// Brute force is not asked for more triangles.
 const MOST_LINEAR: u32 = 1_000;

@@ -20,7 +20,7 @@ use lancer_exercise::Shown;
 use lancer_figure::{Backdrop, INK, MUTED, Step, Tree, Walk, category_color, method_color};
 use lancer_whitted::{Settings, Whitted};
 
-use crate::structures::Structure;
+use lancer_accel::structures::Structure;
 use record::{Event, Kind, Recorder};
 
 /// The most boxes and cells of an index that stay in the drawing: more cannot be told apart.

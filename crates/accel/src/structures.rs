@@ -1,8 +1,9 @@
 //! Every index of the course by name, the one list that figures, benches and the command line share.
 
-use lancer_accel::{BspTree, Bvh, Grid, KdTree, ObvhsBvh2, ObvhsCwbvh, Octree, Wide};
 use lancer_core::intersector::{LinearScan, Observable};
 use lancer_core::scene::Scene;
+
+use crate::{BspTree, Bvh, Grid, KdTree, ObvhsBvh2, ObvhsCwbvh, Octree, Wide};
 
 /// An index by name.
 #[derive(Clone, Copy)]
@@ -93,25 +94,5 @@ impl Structure {
     /// About how many bytes the index of so many primitives may take.
     pub fn expected_bytes(&self, primitives: usize) -> usize {
         self.bytes_per_primitive * primitives
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scenes::FAMILIES;
-
-    /// What is said of the memory is what the worst kind of scene takes, within a quarter.
-    #[test]
-    fn the_memory_is_as_expected() {
-        let scenes = FAMILIES.map(|family| family.scene(30_000));
-        for structure in STRUCTURES.into_iter().filter(|structure| structure.name != "linear") {
-            let parts = scenes.iter().map(|scene| {
-                let expected = structure.expected_bytes(scene.primitives().len());
-                (structure.build)(scene).bytes as f64 / expected as f64
-            });
-            let most = parts.fold(0.0, f64::max);
-            assert!((0.75..1.25).contains(&most), "{}: {most}", structure.name);
-        }
     }
 }
