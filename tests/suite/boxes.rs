@@ -1,10 +1,10 @@
 //! A box that a ray touches is never missed; the exact answers come with [`HardBox`].
 
-use chapter_1::hard_boxes::{Class, HardBox};
-use chapter_1::naive::min_max_box;
 use glam::DVec3;
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
 use lancer_core::sampling::Uniform;
+use lancer_lesson::hard_boxes::{Class, HardBox};
+use lancer_lesson::naive::min_max_box;
 
 fn misses(rays: usize, enters: impl Fn(&HardBox) -> bool) -> Vec<(&'static str, usize)> {
     Class::ALL

@@ -2,14 +2,14 @@
 
 use std::sync::atomic::AtomicBool;
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use lancer_accel::{ObvhsBvh2, Wide};
 use lancer_core::Rgb;
 use lancer_core::generate::{icosphere, sphere_flake};
 use lancer_core::image::ImageSize;
 use lancer_core::intersector::{Intersector, LinearScan};
-use lancer_core::render::{Cancelled, Control, Rendering, Seen, render_pixels};
-use lancer_core::sampling::{Pattern, PixelSampling};
+use lancer_core::render::{Cancelled, Control, PrimaryHits, Rendering, render_pixels};
+use lancer_core::sampling::{Pattern, PixelSampling, Sample};
 use lancer_core::scene::{Material, MaterialId, PointLight, Scene};
 use lancer_core::world::World;
 use lancer_whitted::{AtLimit, RayCounts, Settings, Whitted};
@@ -40,8 +40,8 @@ fn render(threads: usize, tile: u32, pattern: Pattern, settings: Settings) -> Re
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let control = Control { tile, ..Control::default() };
     pool.install(|| {
-        render_pixels(size, sampling, control, |film: DVec2, counts: &mut RayCounts| {
-            method.trace(&rays.through(film.x, film.y), counts)
+        render_pixels(size, sampling, control, |sample: &Sample, counts: &mut RayCounts| {
+            method.trace(&rays.through(sample.film.x, sample.film.y), counts)
         })
     })
     .unwrap()
@@ -62,16 +62,16 @@ fn pictures_do_not_depend_on_who_answers() {
             let [together, alone] = [&wide as &dyn Intersector, &linear].map(|index| {
                 let world = World { scene, index };
                 let whitted = Whitted::new(world, Settings::default());
-                let seen = Seen::new(world, size, |ray, hit, counts: &mut RayCounts| {
+                let hits = PrimaryHits::new(world, size, |ray, hit, _, counts: &mut RayCounts| {
                     whitted.shade(ray, hit, counts)
                 });
-                let together = render_pixels(size, sampling, Control::default(), seen).unwrap();
+                let together = render_pixels(size, sampling, Control::default(), hits).unwrap();
                 let alone = render_pixels(
                     size,
                     sampling,
                     Control::default(),
-                    |film: DVec2, counts: &mut _| {
-                        whitted.trace(&rays.through(film.x, film.y), counts)
+                    |sample: &Sample, counts: &mut _| {
+                        whitted.trace(&rays.through(sample.film.x, sample.film.y), counts)
                     },
                 );
                 assert_eq!(together, alone.unwrap());
@@ -115,6 +115,8 @@ fn a_cancelled_rendering_is_no_picture() {
     let control = Control { cancelled: &cancelled, ..Control::default() };
     let size = ImageSize::new(8, 8);
     let result =
-        render_pixels(size, PixelSampling::CENTER, control, |_, _: &mut RayCounts| Rgb::ONE);
+        render_pixels(size, PixelSampling::CENTER, control, |_: &Sample, _: &mut RayCounts| {
+            Rgb::ONE
+        });
     assert_eq!(result, Err(Cancelled));
 }

@@ -1,8 +1,8 @@
 //! One triangle and the inputs that break triangle tests, each with the answer to demand.
 
-use chapter_1::naive::BySigns;
 use glam::{DVec2, DVec3};
 use lancer_core::geometry::{Ray, Shear, TriangleHit, intersect_triangle};
+use lancer_lesson::naive::BySigns;
 
 use crate::random::Random;
 

@@ -4,11 +4,11 @@
 use std::fs;
 use std::path::Path;
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use lancer_accel::ObvhsBvh2;
 use lancer_core::image::{self, Image, ImageSize, save};
 use lancer_core::render::{Control, render_pixels};
-use lancer_core::sampling::{Pattern, PixelSampling};
+use lancer_core::sampling::{Pattern, PixelSampling, Sample};
 use lancer_core::scene::Scene;
 use lancer_core::scene::load::load;
 use lancer_core::world::World;
@@ -137,8 +137,9 @@ fn picture(scene: &Scene) -> Image {
     let size = ImageSize::new(8, 8);
     let rays = scene.camera.primary_rays(size);
     let sampling = PixelSampling { pattern: Pattern::Regular, samples: 1, seed: 0 };
-    let radiance =
-        |film: DVec2, counts: &mut RayCounts| method.trace(&rays.through(film.x, film.y), counts);
+    let radiance = |sample: &Sample, counts: &mut RayCounts| {
+        method.trace(&rays.through(sample.film.x, sample.film.y), counts)
+    };
     render_pixels(size, sampling, Control::default(), radiance).unwrap().image
 }
 

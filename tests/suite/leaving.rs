@@ -1,12 +1,12 @@
 //! A ray that leaves a surface does not meet it again where it starts, at any scale and place, and does
 //! not jump over a neighbour either.
 
-use chapter_1::naive::moeller_trumbore;
 use glam::DVec3;
 use lancer_core::generate::icosphere;
 use lancer_core::geometry::{Interval, Ray, Sphere};
 use lancer_core::intersector::{Intersector, LinearScan};
 use lancer_core::scene::{MaterialId, Mesh, Scene, SphereObject};
+use lancer_lesson::naive::moeller_trumbore;
 
 use crate::random::Random;
 

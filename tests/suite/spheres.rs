@@ -1,8 +1,8 @@
 //! Far, small, huge and grazed spheres against numbers computed to 40 digits or by hand.
 
-use chapter_1::naive::textbook_sphere;
 use glam::DVec3;
 use lancer_core::geometry::{Interval, Ray, Sphere};
+use lancer_lesson::naive::textbook_sphere;
 
 use crate::random::Random;
 

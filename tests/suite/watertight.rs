@@ -1,12 +1,12 @@
 //! 0 leaks in rays aimed at shared edges and vertices of closed meshes. Random rays find nothing, not
 //! even with a leaking test, so every ray is aimed.
 
-use chapter_1::naive::{BySigns, moeller_trumbore};
 use glam::DVec3;
 use lancer_accel::ObvhsBvh2;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::intersector::{Intersector, LinearScan};
 use lancer_core::scene::{Mesh, Scene};
+use lancer_lesson::naive::{BySigns, moeller_trumbore};
 
 use crate::meshes::{OFFSETS, Target, aimed_ray, closed_meshes, moved};
 use crate::random::Random;

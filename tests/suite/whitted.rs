@@ -47,18 +47,18 @@ fn local_terms_by_hand() {
     let reflectance =
         Reflectance { diffuse: Rgb::new(0.5, 0.25, 0.0), specular: grey(0.5), shininess: 10.0 };
     // At full strength in the mirror direction: I g (ρ_d 0.8 + ρ_s).
-    let full = local(grey(8.0), 0.25, &reflectance, n, to_light, mirror);
+    let full = 2.0 * local(&reflectance, n, to_light, mirror);
     assert!((full - Rgb::new(1.8, 1.4, 1.0)).abs().max_element() < 1e-15, "{full}");
     // At 60 degrees off it: (1/2)^10.
     let eye =
         DVec3::new(-0.6 * 0.5 - 0.8 * 0.75_f64.sqrt(), 0.8 * 0.5 - 0.6 * 0.75_f64.sqrt(), 0.0);
-    let dim = local(grey(8.0), 0.25, &reflectance, n, to_light, eye);
+    let dim = 2.0 * local(&reflectance, n, to_light, eye);
     assert!((dim.z - 2.0 * 0.5 / 1024.0).abs() < 1e-15, "{dim}");
     // Opposite the mirror direction an even power must not light anything: only ρ_d is left.
-    let behind = local(grey(8.0), 0.25, &reflectance, n, to_light, -mirror);
+    let behind = 2.0 * local(&reflectance, n, to_light, -mirror);
     assert!((behind - Rgb::new(0.8, 0.4, 0.0)).abs().max_element() < 1e-15, "{behind}");
     // A light below the horizon.
-    assert_eq!(local(grey(8.0), 0.25, &reflectance, n, -to_light, mirror), Rgb::ZERO);
+    assert_eq!(2.0 * local(&reflectance, n, -to_light, mirror), Rgb::ZERO);
 }
 
 #[test]

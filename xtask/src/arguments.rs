@@ -3,6 +3,13 @@
 use std::fmt::Display;
 use std::str::FromStr;
 
+use anyhow::Result;
+use lancer_accel::structures::{STRUCTURES, Structure};
+use lancer_core::method::Setting;
+
+use crate::chapters::list;
+use crate::names::named;
+
 /// Reads whole numbers in a range.
 pub fn whole<T: FromStr + PartialOrd + Copy + Display>(
     least: T,
@@ -11,5 +18,37 @@ pub fn whole<T: FromStr + PartialOrd + Copy + Display>(
     move |text| {
         let number = text.parse().ok().filter(|number| (least..=most).contains(number));
         number.ok_or_else(|| format!("write a whole number from {least} to {most}"))
+    }
+}
+
+/// The index of that name.
+///
+/// # Errors
+/// An unknown name is answered with the known ones.
+pub fn structure(name: &str) -> Result<Structure> {
+    named("index", name, STRUCTURES, |structure| structure.name)
+}
+
+/// The names of all indexes, for a help text.
+pub fn indexes() -> String {
+    list(&STRUCTURES.map(|structure| structure.name), "or")
+}
+
+/// Says which of the settings that are given, by their flags, `whom` takes no notice of.
+pub fn warn_of_unused(
+    given: impl IntoIterator<Item = (Setting, bool)>,
+    used: &[Setting],
+    whom: &str,
+) {
+    for (setting, is_given) in given {
+        if is_given && !used.contains(&setting) {
+            let flag = match setting {
+                Setting::Sampling => "--spp",
+                Setting::Adaptive => "--adaptive",
+                Setting::MaxDepth => "--depth",
+                Setting::Index => "--index",
+            };
+            eprintln!("warning: {flag} changes nothing: {whom} does not use it");
+        }
     }
 }

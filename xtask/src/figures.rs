@@ -5,33 +5,12 @@ use std::time::Instant;
 use anyhow::{Context, Result, bail};
 use lancer_core::image::write_atomically;
 use lancer_figure::{Effort, Entry, Figure, Verdict, index_html};
+use lancer_lesson::Chapter;
 
+use crate::chapters::{CHAPTERS, figures};
 use crate::names::choose;
 use crate::progress;
 use crate::repository::root;
-
-/// A chapter and its figures.
-struct Chapter {
-    number: &'static str,
-    folder: &'static str,
-    title: &'static str,
-    figures: &'static [Figure],
-}
-
-const CHAPTERS: [Chapter; 2] = [
-    Chapter {
-        number: "1",
-        folder: "1-whitted",
-        title: "1 Introduction au lancer de rayons",
-        figures: chapter_1::figures::FIGURES,
-    },
-    Chapter {
-        number: "4",
-        folder: "4-accel",
-        title: "4 Accélération du lancer de rayons",
-        figures: chapter_4::figures::FIGURES,
-    },
-];
 
 /// Draws the course's figures, each with its data, and a page of all of them.
 ///
@@ -62,7 +41,7 @@ pub fn run(args: &Args) -> Result<()> {
     let selected = select(&args.selection)?;
     if args.list {
         for (chapter, figure) in selected {
-            say!("{:<5} {:<14} {}", figure.id, figure.name, chapter.title);
+            say!("{:<5} {:<14} {}", figure.id, figure.name, heading(chapter));
         }
         return Ok(());
     }
@@ -110,10 +89,7 @@ pub fn run(args: &Args) -> Result<()> {
 
 /// The figures that the words choose, in the course's order.
 fn select(words: &[String]) -> Result<Vec<(&'static Chapter, &'static Figure)>> {
-    let all: Vec<(&Chapter, &Figure)> = CHAPTERS
-        .iter()
-        .flat_map(|chapter| chapter.figures.iter().map(move |f| (chapter, f)))
-        .collect();
+    let all: Vec<(&Chapter, &Figure)> = figures().collect();
     if words.is_empty() {
         return Ok(all);
     }
@@ -128,6 +104,11 @@ fn select(words: &[String]) -> Result<Vec<(&'static Chapter, &'static Figure)>> 
         chosen.iter().any(|name| [chapter.number, figure.id, figure.name].contains(name))
     };
     Ok(all.into_iter().filter(is_chosen).collect())
+}
+
+/// A chapter's number and title.
+fn heading(chapter: &Chapter) -> String {
+    format!("{} {}", chapter.number, chapter.title)
 }
 
 /// Makes one figure and writes its files.
@@ -166,7 +147,7 @@ fn draw(chapter: &Chapter, figure: &Figure, effort: Effort, out: &Path) -> Resul
         ("data.csv", finished.data.to_csv().into_bytes()),
         ("meta.json", (serde_json::to_string_pretty(&meta)? + "\n").into_bytes()),
     ];
-    let mut entry = Entry::of(&plate, chapter.title, seconds, png);
+    let mut entry = Entry::of(&plate, heading(chapter), seconds, png);
     for (file, bytes) in files {
         write_atomically(folder.join(file), &bytes)?;
         entry = entry.file(format!("{}/{name}/{file}", chapter.folder));

@@ -10,6 +10,7 @@ macro_rules! say {
 }
 
 mod arguments;
+mod chapters;
 mod compare;
 mod eq;
 mod exercise;

@@ -13,13 +13,20 @@ pub fn choose(kind: &str, given: &str, known: &[&str]) -> Result<usize> {
     bail!("unknown {kind} `{given}`; known: {}", nearest_first(given, known).join(", "))
 }
 
-/// The entry of that name in a table of a `kind` of thing.
+/// The one of that name among things of a `kind`.
 ///
 /// # Errors
 /// As [`choose`].
-pub fn named<T: Copy>(kind: &str, given: &str, table: &[(&str, T)]) -> Result<T> {
-    let names: Vec<&str> = table.iter().map(|(name, _)| *name).collect();
-    Ok(table[choose(kind, given, &names)?].1)
+pub fn named<T>(
+    kind: &str,
+    given: &str,
+    things: impl IntoIterator<Item = T>,
+    name: impl Fn(&T) -> &'static str,
+) -> Result<T> {
+    let mut things: Vec<T> = things.into_iter().collect();
+    let names: Vec<&str> = things.iter().map(name).collect();
+    let index = choose(kind, given, &names)?;
+    Ok(things.swap_remove(index))
 }
 
 fn nearest_first<'a>(given: &str, known: &[&'a str]) -> Vec<&'a str> {

@@ -1,39 +1,27 @@
-use std::path::PathBuf;
+use std::cell::Cell;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::Instant;
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use glam::DVec3;
-use lancer_accel::structures::STRUCTURES;
+use lancer_accel::structures::Structure;
 use lancer_core::Rgb;
-use lancer_core::image::{ImageSize, check_target, save};
-use lancer_core::intersector::Intersector;
-use lancer_core::render::{Control, Film, Rendering, Seen, render_adaptive, render_pixels};
+use lancer_core::image::{Image, ImageSize, check_target, save};
+use lancer_core::method::{BuildIndex, ByProduct, Effect, Method, Order, Outcome, Setting, WorkKind};
+use lancer_core::render::Control;
 use lancer_core::sampling::{Pattern, PixelSampling};
 use lancer_core::scene::load::WarningKind;
 use lancer_core::scene::{PointLight, Scene};
-use lancer_core::world::World;
-use lancer_whitted::{Appel, RayCounts, Settings, Whitted};
 
-use crate::arguments::whole;
+use crate::arguments::{indexes, structure, warn_of_unused, whole};
+use crate::chapters::{list, methods, scenes_in_words};
 use crate::names::named;
 use crate::{progress, scene};
 
-#[derive(Clone, Copy)]
-enum Method {
-    Appel,
-    Whitted,
-}
-
-const METHODS: [(&str, Method); 2] = [("appel", Method::Appel), ("whitted", Method::Whitted)];
 /// Renders a scene by any method of the course.
-///
-/// SCENE is a .toml file, an .obj file (framed automatically, and lit by a lamp beside the camera if
-/// it has none), or a scene of the course: whitted, room, horizon, one of flake, tetrahedra and gears
-/// with a level of detail, such as flake:4, or one of soup, scan, town and stadium with a number of
-/// triangles, such as stadium:100000.
 #[derive(clap::Args)]
-#[command(after_help = "Examples:
+#[command(long_about = about(), after_help = "Examples:
   cargo xtask render whitted --out whitted.png
   cargo xtask render bunny.obj --method appel --size 1024x1024 --spp 16 --out bunny.png
   cargo xtask render whitted --spp 16 --adaptive 0.02 --out smooth.png
@@ -41,12 +29,9 @@ const METHODS: [(&str, Method); 2] = [("appel", Method::Appel), ("whitted", Meth
 pub struct Args {
     /// A .toml or .obj file, or a scene of the course
     scene: String,
-    /// appel (visibility and shadows) or whitted (mirrors and glass as well)
-    #[arg(long, default_value = "whitted")]
+    #[arg(long, default_value = "whitted", help = methods_in_words())]
     method: String,
-    /// linear (every primitive for every ray), wide, bvh, obvhs-bvh2, obvhs-cwbvh, grid, octree, kd or bsp:
-    /// the same picture in another time
-    #[arg(long, default_value = "wide")]
+    #[arg(long, default_value = "wide", help = format!("{}: the same picture in another time", indexes()))]
     index: String,
     /// Pixels across and down
     #[arg(long, default_value = "512x512", value_name = "WxH", allow_hyphen_values = true)]
@@ -58,9 +43,9 @@ pub struct Args {
     /// display's range, and one in the others
     #[arg(long, value_name = "CONTRAST", value_parser = part, allow_hyphen_values = true)]
     adaptive: Option<f64>,
-    /// Largest number of bounces between the eye and a surface (whitted)
-    #[arg(long, default_value_t = 5, value_parser = whole::<u32>(0, 1000), allow_negative_numbers = true)]
-    depth: u32,
+    /// Largest number of bounces between the eye and a surface (whitted); 5 unless given
+    #[arg(long, value_parser = whole::<u32>(0, 1000), allow_negative_numbers = true)]
+    depth: Option<u32>,
     /// Picks the sample positions
     #[arg(long, default_value_t = 0, value_parser = whole::<u64>(0, u64::MAX), allow_negative_numbers = true)]
     seed: u64,
@@ -85,6 +70,8 @@ pub struct Args {
     /// The picture: .png is sRGB, .exr is linear
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
+    #[arg(long, value_name = "NAME=FILE", value_parser = by_product, help = by_products_in_words())]
+    also: Vec<(String, PathBuf)>,
 }
 
 /// Numbers separated by commas.
@@ -114,11 +101,60 @@ fn part(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "write a number from 0 to 1".to_owned())
 }
 
+/// Reads what is wanted beside the picture.
+fn by_product(text: &str) -> Result<(String, PathBuf), String> {
+    let parts = text.split_once('=').filter(|(name, file)| !name.is_empty() && !file.is_empty());
+    let (name, file) =
+        parts.ok_or_else(|| "write NAME=FILE, such as samples=samples.exr".to_owned())?;
+    Ok((name.to_owned(), file.into()))
+}
+
+fn about() -> String {
+    format!(
+        "Renders a scene by any method of the course.\n\n\
+         SCENE is a .toml file, an .obj file (framed automatically, and lit by a lamp beside the camera if it has \
+         none), or a scene of the course: {}.",
+        scenes_in_words()
+    )
+}
+
+fn methods_in_words() -> String {
+    let methods: Vec<String> =
+        methods().map(|method| format!("{} ({})", method.name, method.about)).collect();
+    let methods: Vec<&str> = methods.iter().map(String::as_str).collect();
+    list(&methods, "or")
+}
+
+fn by_products_in_words() -> String {
+    let mut known: Vec<ByProduct> = Vec::new();
+    for by_product in methods().flat_map(|method| method.by_products) {
+        if !known.contains(by_product) {
+            known.push(*by_product);
+        }
+    }
+    let known = known.iter().map(|ByProduct { name, about }| format!("{name}: {about}"));
+    let known: Vec<String> = known.collect();
+    format!(
+        "A second picture ({}); an .exr keeps the numbers, a .png shows the largest as white",
+        known.join("; ")
+    )
+}
+
 pub fn run(args: &Args) -> Result<()> {
-    let method = named("method", &args.method, &METHODS)?;
-    let structures = STRUCTURES.map(|structure| (structure.name, structure));
-    let structure = named("index", &args.index, &structures)?;
+    let method = named("method", &args.method, methods(), |method| method.name)?;
+    let structure = structure(&args.index)?;
+    let by_products = args
+        .also
+        .iter()
+        .map(|(name, _)| {
+            let what = format!("by-product of {}", method.name);
+            named(&what, name, method.by_products, |known| known.name).map(|known| known.name)
+        })
+        .collect::<Result<Vec<_>>>()?;
     check_target(&args.out).context("--out")?;
+    for (_, file) in &args.also {
+        check_target(file).context("--also")?;
+    }
     progress::watch_for_interrupt()?;
 
     let start = Instant::now();
@@ -131,6 +167,7 @@ pub fn run(args: &Args) -> Result<()> {
     }
     let mut scene = loaded.scene;
     place(&mut scene, loaded.headlight, args)?;
+    warn(method, &scene, args);
     let counts = scene.counts();
     say!(
         "scene   {:7.3} s   {} triangles in {} faces, {} spheres, {} lights",
@@ -150,17 +187,17 @@ pub fn run(args: &Args) -> Result<()> {
         .num_threads(args.threads.into())
         .build()
         .context("cannot start the threads")?;
-    let rendering = pool.install(|| {
-        let start = Instant::now();
-        let built = (structure.build)(&scene);
-        let mib = built.bytes as f64 / f64::from(1 << 20);
-        say!("index   {:7.3} s   {}, {mib:.1} MiB", start.elapsed().as_secs_f64(), args.index);
-        trace(method, &scene, &*built.index, args)
-    })?;
-
-    let defects = rendering.image.defects();
-    save(&args.out, &rendering.image, args.exposure)?;
+    let outcome = pool.install(|| trace(method, &scene, structure, &by_products, args))?;
+    let beside = outcome.by_products.iter().zip(&args.also);
+    for ((_, image), (_, file)) in beside {
+        save(file, &if is_png(file) { scaled(image) } else { image.clone() }, 0.0)?;
+    }
+    let defects = outcome.image.defects();
+    save(&args.out, &outcome.image, args.exposure)?;
     say!("picture {}", args.out.display());
+    for (name, file) in &args.also {
+        say!("{name} {}", file.display());
+    }
     if defects.not_finite + defects.negative > 0 {
         bail!(
             "{} pixels are not finite and {} are negative: please report the scene",
@@ -204,59 +241,70 @@ fn place(scene: &mut Scene, headlight: bool, args: &Args) -> Result<()> {
     Ok(())
 }
 
-fn trace(
-    method: Method,
-    scene: &Scene,
-    index: &dyn Intersector,
-    args: &Args,
-) -> Result<Rendering<RayCounts>> {
-    let world = World { scene, index };
-    match method {
-        Method::Appel => {
-            let appel = Appel::new(world);
-            picture(
-                args,
-                Seen::new(world, args.size, |ray, hit, counts| appel.shade(ray, hit, counts)),
-            )
-        }
-        Method::Whitted => {
-            let settings = Settings { max_depth: args.depth, ..Settings::default() };
-            let whitted = Whitted::new(world, settings);
-            picture(
-                args,
-                Seen::new(world, args.size, |ray, hit, counts| whitted.shade(ray, hit, counts)),
-            )
-        }
+/// Says what the method takes no notice of: flags, and what is in the scene.
+fn warn(method: &Method, scene: &Scene, args: &Args) {
+    let given = [
+        (Setting::Sampling, args.spp != 1),
+        (Setting::Adaptive, args.adaptive.is_some()),
+        (Setting::MaxDepth, args.depth.is_some()),
+    ];
+    warn_of_unused(given, method.uses, method.name);
+    let ignored = method.ignores.iter().filter(|effect| effect.is_in(scene));
+    let ignored: Vec<String> = ignored.map(Effect::to_string).collect();
+    if !ignored.is_empty() {
+        eprintln!("warning: {} leaves out what the scene has: {}", method.name, ignored.join(", "));
     }
 }
 
-fn picture(args: &Args, film: impl Film<RayCounts>) -> Result<Rendering<RayCounts>> {
+fn trace(
+    method: &Method,
+    scene: &Scene,
+    structure: Structure,
+    by_products: &[&'static str],
+    args: &Args,
+) -> Result<Outcome> {
+    let building = Cell::new(0.0);
+    let index: &BuildIndex = &|scene| {
+        let start = Instant::now();
+        let built = (structure.build)(scene);
+        let seconds = start.elapsed().as_secs_f64();
+        let mib = built.bytes as f64 / f64::from(1 << 20);
+        say!("index   {seconds:7.3} s   {}, {mib:.1} MiB", structure.name);
+        building.set(building.get() + seconds);
+        built.index
+    };
     let pattern = if args.spp == 1 { Pattern::Regular } else { Pattern::Owen };
-    let sampling = PixelSampling { pattern, samples: args.spp, seed: args.seed };
     let bar = progress::bar(args.size.pixels() as u64, "tracing");
     let control = Control {
         progress: &|pixels| bar.set_position(pixels),
         cancelled: &progress::INTERRUPTED,
         ..Control::default()
     };
-    let start = Instant::now();
-    let rendering = match args.adaptive {
-        Some(contrast) => render_adaptive(args.size, sampling, contrast, control, film),
-        None => render_pixels(args.size, sampling, control, film),
+    let order = Order {
+        sampling: PixelSampling { pattern, samples: args.spp, seed: args.seed },
+        adaptive: args.adaptive,
+        max_depth: args.depth,
+        by_products,
+        control,
+        ..Order::new(scene, index, args.size)
     };
-    let rendering = rendering.map_err(|_| anyhow!("interrupted; no file was written"));
-    let seconds = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    let outcome = (method.render)(&order);
+    let seconds = start.elapsed().as_secs_f64() - building.get();
     bar.finish_and_clear();
-    let rendering = rendering?;
-    let counts = rendering.counts;
-    say!(
-        "trace   {seconds:7.3} s   {} rays: {} primary, {} mirror, {} refracted, {} shadow; {:.2} M/s",
-        counts.total(),
-        counts.primary,
-        counts.mirror,
-        counts.refracted,
-        counts.shadow,
-        counts.total() as f64 / seconds * 1e-6,
-    );
-    Ok(rendering)
+    let outcome = outcome.map_err(|_| anyhow!("interrupted; no file was written"))?;
+    let rays = outcome.work.total(WorkKind::Rays);
+    say!("trace   {seconds:7.3} s   {}; {:.2} M/s", outcome.work, rays as f64 / seconds * 1e-6);
+    Ok(outcome)
+}
+
+/// A picture whose largest value is white.
+fn scaled(image: &Image) -> Image {
+    let most = image.pixels().as_flattened().iter().copied().fold(0.0, f32::max);
+    let part = |pixel: &[f32; 3]| pixel.map(|value| if most > 0.0 { value / most } else { 0.0 });
+    Image::from_pixels(image.size(), image.pixels().iter().map(part).collect())
+}
+
+fn is_png(file: &Path) -> bool {
+    file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
 }

@@ -1,40 +1,28 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
-use lancer_accel::ObvhsBvh2;
-use lancer_accel::structures::STRUCTURES;
 use lancer_core::image::{ImageSize, check_writable, write_atomically};
-use lancer_core::scene::load::Loaded;
-use lancer_figure::Walk;
-use lancer_whitted::Settings;
+use lancer_core::method::Setting;
+use lancer_lesson::chapter::WalkOrder;
 
-use crate::arguments::whole;
+use crate::arguments::{indexes, structure, warn_of_unused, whole};
+use crate::chapters::{list, walks};
 use crate::names::named;
 use crate::scene;
-
-type Algorithm = fn(&Args, &Loaded) -> Result<Walk>;
-
-const ALGORITHMS: [(&str, Algorithm); 2] = [("whitted", whitted), ("accel", accel)];
 
 /// The most steps of a page: its drawing has all of them.
 const MOST_STEPS: usize = 5000;
 
 /// Walks through an algorithm for one pixel, step by step.
-///
-/// whitted is the slides' algorithm LR: each call with its ray, what it meets, the terms of the local model
-/// lamp by lamp, the rays that it spawns, and the sum that comes back up.
-///
-/// accel is the search for what the pixel's ray meets, through one index after the other: each box and cell
-/// on its way, each primitive that is tested, and a table of what all of them did.
 #[derive(clap::Args)]
-#[command(after_help = "Examples:
+#[command(long_about = about(), after_help = "Examples:
   cargo xtask step whitted --scene whitted --pixel 246,157
   cargo xtask step whitted --scene room --pixel 200,300 --depth 2
   cargo xtask step whitted --scene whitted --pixel 246,157 --out step.html   a page with a slider
   cargo xtask step accel --scene stadium:20000 --pixel 256,256 --out step.html
   cargo xtask step accel --scene town:2000 --pixel 256,300 --index kd")]
 pub struct Args {
-    /// whitted or accel
+    #[arg(help = algorithms())]
     algorithm: String,
     /// A .toml or .obj file, or a scene of the course
     #[arg(long)]
@@ -45,11 +33,10 @@ pub struct Args {
     /// Pixels of the whole picture across and down
     #[arg(long, default_value = "512x512", value_name = "WxH", allow_hyphen_values = true)]
     size: ImageSize,
-    /// Largest number of bounces between the eye and a surface (whitted)
-    #[arg(long, default_value_t = 5, value_parser = whole::<u32>(0, 16), allow_negative_numbers = true)]
-    depth: u32,
-    /// Only this index: linear, wide, bvh, obvhs-bvh2, obvhs-cwbvh, grid, octree, kd or bsp (accel)
-    #[arg(long)]
+    /// Largest number of bounces between the eye and a surface (whitted); 5 unless given
+    #[arg(long, value_parser = whole::<u32>(0, 16), allow_negative_numbers = true)]
+    depth: Option<u32>,
+    #[arg(long, help = format!("Only this index: {} (accel)", indexes()))]
     index: Option<String>,
     /// Writes a page instead of the text: a slider over the steps, with the rays in a drawing of the scene
     /// beside the tree of the calls
@@ -65,7 +52,9 @@ fn pixel(text: &str) -> Result<[u32; 2], String> {
 }
 
 pub fn run(args: &Args) -> Result<()> {
-    let algorithm = named("algorithm", &args.algorithm, &ALGORITHMS)?;
+    let algorithm = named("algorithm", &args.algorithm, walks(), |walk| walk.name)?;
+    let index = args.index.as_ref();
+    let index = index.map(|index| structure(index)).transpose()?.map(|structure| structure.name);
     let (size, [x, y]) = (args.size, args.pixel);
     ensure!(
         x < size.width && y < size.height,
@@ -80,7 +69,16 @@ pub fn run(args: &Args) -> Result<()> {
     for warning in &loaded.warnings {
         eprintln!("warning: {warning}");
     }
-    let walk = algorithm(args, &loaded)?;
+    let given = [(Setting::MaxDepth, args.depth.is_some()), (Setting::Index, index.is_some())];
+    warn_of_unused(given, algorithm.uses, algorithm.name);
+    let walk = (algorithm.walk)(&WalkOrder {
+        name: &args.scene,
+        loaded: &loaded,
+        size,
+        pixel: args.pixel,
+        max_depth: args.depth,
+        index,
+    })?;
     match &args.out {
         None => say!("{}", walk.to_text().trim_end()),
         Some(out) => {
@@ -96,32 +94,14 @@ pub fn run(args: &Args) -> Result<()> {
     Ok(())
 }
 
-fn whitted(args: &Args, loaded: &Loaded) -> Result<Walk> {
-    ensure!(
-        args.index.is_none(),
-        "--index: whitted's walk is the same with every index; leave it out"
-    );
-    let index = ObvhsBvh2::build(&loaded.scene);
-    Ok(chapter_1::step::walk(&chapter_1::step::Request {
-        name: &args.scene,
-        loaded,
-        index: &index,
-        size: args.size,
-        pixel: args.pixel,
-        settings: Settings { max_depth: args.depth, ..Settings::default() },
-    }))
+fn algorithms() -> String {
+    let names: Vec<&str> = walks().map(|walk| walk.name).collect();
+    list(&names, "or")
 }
 
-fn accel(args: &Args, loaded: &Loaded) -> Result<Walk> {
-    let known = STRUCTURES.map(|structure| (structure.name, structure));
-    let one = args.index.as_ref().map(|name| named("index", name, &known)).transpose()?;
-    Ok(chapter_4::step::walk(&chapter_4::step::Request {
-        name: &args.scene,
-        loaded,
-        size: args.size,
-        pixel: args.pixel,
-        structures: one.as_ref().map_or(&STRUCTURES, std::slice::from_ref),
-    }))
+fn about() -> String {
+    let walks: Vec<String> = walks().map(|walk| format!("{} {}.", walk.name, walk.about)).collect();
+    format!("Walks through an algorithm for one pixel, step by step.\n\n{}", walks.join("\n\n"))
 }
 
 /// Refuses what cannot be written as a page, before the work.

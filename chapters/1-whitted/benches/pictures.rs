@@ -9,8 +9,8 @@ use lancer_core::Rgb;
 use lancer_core::geometry::Ray;
 use lancer_core::image::ImageSize;
 use lancer_core::intersector::{Hit, Intersector, LinearScan};
-use lancer_core::render::{Control, Seen, render_pixels};
-use lancer_core::sampling::PixelSampling;
+use lancer_core::render::{Control, PrimaryHits, render_pixels};
+use lancer_core::sampling::{PixelSampling, Sample};
 use lancer_core::scene::Scene;
 use lancer_core::world::World;
 use lancer_whitted::{Appel, RayCounts, Settings, Whitted};
@@ -21,8 +21,9 @@ fn picture(
     world: World,
     shade: impl Fn(&Ray, Option<Hit>, &mut RayCounts) -> Rgb + Sync,
 ) -> RayCounts {
-    let seen = Seen::new(world, SIZE, shade);
-    let rendering = render_pixels(SIZE, PixelSampling::CENTER, Control::default(), seen);
+    let shade = |ray: &Ray, hit, _: &Sample, counts: &mut _| shade(ray, hit, counts);
+    let hits = PrimaryHits::new(world, SIZE, shade);
+    let rendering = render_pixels(SIZE, PixelSampling::CENTER, Control::default(), hits);
     rendering.expect("nobody cancels a bench").counts
 }
 
@@ -54,7 +55,7 @@ fn pictures(criterion: &mut Criterion) {
     });
     group.finish();
 
-    let gears = scenes::open("gears", Some("4")).expect("a scene of the chapter").scene;
+    let gears = scenes::opened("gears", Some("4")).scene;
     let (tree, wide) = (ObvhsBvh2::build(&gears), Wide::build(&gears));
     let mut group = criterion.benchmark_group("gears:4");
     group.sample_size(20);

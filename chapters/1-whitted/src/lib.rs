@@ -3,7 +3,19 @@
 
 pub mod exercises;
 pub mod figures;
-pub mod hard_boxes;
-pub mod naive;
 pub mod scenes;
 pub mod step;
+
+use lancer_lesson::Chapter;
+
+/// The chapter.
+pub static CHAPTER: Chapter = Chapter {
+    number: "1",
+    folder: "1-whitted",
+    title: "Introduction au lancer de rayons",
+    figures: figures::FIGURES,
+    course: &exercises::COURSE,
+    scenes: &scenes::SCENES,
+    methods: &lancer_whitted::METHODS,
+    walks: &[step::WALK],
+};

@@ -2,37 +2,50 @@
 
 use std::path::Path;
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result};
 use lancer_core::generate::{gears, sphere_flake, tetrahedra};
 use lancer_core::scene::load::{Loaded, parse_scene};
 use lancer_core::scene::{Camera, MaterialId, PointLight, Scene};
+use lancer_lesson::scenes::{NamedScene, Source};
 
-/// The names of all scenes.
-pub const NAMES: [&str; 6] = ["whitted", "room", "horizon", "flake", "tetrahedra", "gears"];
+/// All of them.
+pub const SCENES: [NamedScene; 6] = [
+    NamedScene::written("whitted", include_str!("../scenes/whitted.toml")),
+    NamedScene::written("room", include_str!("../scenes/room.toml")),
+    NamedScene::written("horizon", include_str!("../scenes/horizon.toml")),
+    generated("flake"),
+    generated("tetrahedra"),
+    generated("gears"),
+];
 
-/// A generated scene: its name, the level it has unless another is asked for, the highest level, and
+const fn generated(name: &'static str) -> NamedScene {
+    let variants = "a level of detail, such as flake:4";
+    NamedScene { name, source: Source::Generated { variants, make: detailed } }
+}
+
+/// What a generated scene is: its name, the level it has unless another is asked for, the highest level, and
 /// what fills it.
-struct Generated {
+struct Shapes {
     name: &'static str,
     level: u32,
     highest: u32,
     fill: fn(&mut Scene, u32),
 }
 
-const GENERATED: [Generated; 3] = [
-    Generated {
+const SHAPES: [Shapes; 3] = [
+    Shapes {
         name: "flake",
         level: 3,
         highest: 7,
         fill: |scene, level| scene.spheres.extend(sphere_flake(level, MaterialId(0))),
     },
-    Generated {
+    Shapes {
         name: "tetrahedra",
         level: 5,
         highest: 11,
         fill: |scene, level| scene.mesh = tetrahedra(level, MaterialId(0)),
     },
-    Generated {
+    Shapes {
         name: "gears",
         level: 3,
         highest: 30,
@@ -40,67 +53,41 @@ const GENERATED: [Generated; 3] = [
     },
 ];
 
-/// The written scenes and their texts.
-const WRITTEN: [(&str, &str); 3] = [
-    ("whitted", include_str!("../scenes/whitted.toml")),
-    ("room", include_str!("../scenes/room.toml")),
-    ("horizon", include_str!("../scenes/horizon.toml")),
-];
-
 /// Whitted's composition of 1980, in an arrangement of our own.
 pub fn whitted() -> Scene {
-    written(0)
+    opened("whitted", None).scene
 }
 
 /// A polyhedral room with a planar mirror and a rectangular lamp.
 pub fn room() -> Scene {
-    written(1)
+    opened("room", None).scene
 }
 
 /// A checkered floor to the horizon.
 pub fn horizon() -> Scene {
-    written(2)
+    opened("horizon", None).scene
 }
 
-fn written(index: usize) -> Scene {
-    let (name, text) = WRITTEN[index];
-    parsed(name, text)
-}
-
-/// A scene of the chapter's own, from its text.
-pub(crate) fn parsed(name: &str, text: &str) -> Scene {
-    let loaded = parse_scene(text, name, Path::new(""));
-    loaded.unwrap_or_else(|error| panic!("a test loads every scene of the chapter: {error}")).scene
-}
-
-/// Opens a scene by name; `level` is for generated ones.
+/// One of the scenes, by its name and level.
 ///
-/// # Errors
-/// If the name is unknown, or the level is no number in range, or the scene has none.
-pub fn open(name: &str, level: Option<&str>) -> Result<Loaded> {
-    if let Some(generated) = GENERATED.iter().find(|generated| generated.name == name) {
-        let highest = generated.highest;
-        let level = match level {
-            None => generated.level,
-            Some(text) => {
-                text.parse().ok().filter(|level| *level <= highest).with_context(|| {
-                    format!("{name}:{text}: the level is a number from 0 to {highest}")
-                })?
-            }
-        };
-        return generated.open(level);
-    }
-    ensure!(level.is_none(), "{name}: only generated scenes have a level; leave it out");
-    let Some((_, text)) = WRITTEN.iter().find(|(known, _)| *known == name) else {
-        bail!("unknown scene `{name}`; known: {}", NAMES.join(", "));
-    };
-    Ok(parse_scene(text, name, Path::new(""))?)
+/// # Panics
+/// If there is none.
+pub fn opened(name: &str, level: Option<&str>) -> Loaded {
+    let scene = SCENES.iter().find(|scene| scene.name == name);
+    let loaded = scene.unwrap_or_else(|| panic!("no scene is called {name:?}")).open(level);
+    loaded.unwrap_or_else(|error| panic!("{error}"))
 }
 
-impl Generated {
-    /// The shapes, slightly reflecting, framed and lit from beside the camera.
-    fn open(&self, level: u32) -> Result<Loaded> {
-        let material = "
+/// A generated scene of that name, with a level of detail: the shapes, slightly reflecting, framed and lit from
+/// beside the camera.
+fn detailed(name: &str, level: Option<&str>) -> Result<Loaded> {
+    let shapes = SHAPES.iter().find(|shapes| shapes.name == name).context("no generated scene")?;
+    let highest = shapes.highest;
+    let parsed = level.map_or(Some(shapes.level), |text| text.parse().ok());
+    let level = parsed.filter(|level| *level <= highest).with_context(|| {
+        format!("{name}:{}: the level is a number from 0 to {highest}", level.unwrap_or_default())
+    })?;
+    let material = "
             ambient = 0.06
             background = [0.2, 0.25, 0.3]
             [material.shape]
@@ -112,15 +99,14 @@ impl Generated {
             center = [0, 0, 0]
             radius = 1
             material = 'shape'";
-        let mut loaded = parse_scene(material, self.name, Path::new(""))?;
-        let scene = &mut loaded.scene;
-        scene.spheres.clear();
-        (self.fill)(scene, level);
-        scene.camera = Camera::framing(scene.bounding_sphere().context("an empty scene")?);
-        scene.lights.push(PointLight::beside(&scene.camera));
-        loaded.headlight = true;
-        Ok(loaded)
-    }
+    let mut loaded = parse_scene(material, name, Path::new(""))?;
+    let scene = &mut loaded.scene;
+    scene.spheres.clear();
+    (shapes.fill)(scene, level);
+    scene.camera = Camera::framing(scene.bounding_sphere().context("an empty scene")?);
+    scene.lights.push(PointLight::beside(&scene.camera));
+    loaded.headlight = true;
+    Ok(loaded)
 }
 
 #[cfg(test)]
@@ -129,20 +115,24 @@ mod tests {
 
     use super::*;
 
+    fn open(name: &str, level: &str) -> Result<Loaded> {
+        SCENES.iter().find(|scene| scene.name == name).unwrap().open(Some(level))
+    }
+
     #[test]
     fn every_scene_opens_without_a_warning() {
-        for name in NAMES {
-            let loaded = open(name, None).unwrap();
-            assert_eq!(loaded.warnings, [], "{name}");
+        for scene in SCENES {
+            let loaded = scene.open(None).unwrap();
+            assert_eq!(loaded.warnings, [], "{}", scene.name);
             assert!(loaded.scene.has_light() && loaded.scene.camera.check().is_ok());
         }
-        assert_eq!(open("flake", Some("2")).unwrap().scene.counts().spheres, 91);
+        assert_eq!(open("flake", "2").unwrap().scene.counts().spheres, 91);
     }
 
     #[test]
     fn a_wrong_level_is_refused() {
         for (name, level) in [("flake", "9"), ("flake", "-1"), ("gears", "x"), ("room", "1")] {
-            assert!(open(name, Some(level)).is_err(), "{name}:{level}");
+            assert!(open(name, level).is_err(), "{name}:{level}");
         }
     }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use chapter_1::scenes;
 use chapter_1::step::terms::{LocalTerms, Spawned};
-use chapter_1::step::{Request, walk};
+use chapter_1::step::walk;
 use insta::assert_snapshot;
 use lancer_core::Rgb;
 use lancer_core::geometry::Ray;
@@ -13,16 +13,16 @@ use lancer_core::intersector::LinearScan;
 use lancer_core::scene::load::{Loaded, parse_scene};
 use lancer_core::world::World;
 use lancer_figure::Walk;
+use lancer_lesson::chapter::WalkOrder;
 use lancer_whitted::{RayEnd, RayTree, Settings, Whitted, recursion};
 
 fn walked(name: &str, loaded: &Loaded, pixel: [u32; 2], max_depth: u32) -> Walk {
-    let index = LinearScan::new(&loaded.scene);
-    let settings = Settings { max_depth, ..Settings::default() };
-    walk(&Request { name, loaded, index: &index, size: ImageSize::new(64, 48), pixel, settings })
+    let (size, max_depth) = (ImageSize::new(64, 48), Some(max_depth));
+    walk(&WalkOrder { name, loaded, size, pixel, max_depth, index: None })
 }
 
 fn text(name: &str, pixel: [u32; 2], max_depth: u32) -> String {
-    walked(name, &scenes::open(name, None).unwrap(), pixel, max_depth).to_text()
+    walked(name, &scenes::opened(name, None), pixel, max_depth).to_text()
 }
 
 /// algo:lr, eq:local and eq:recursion at every node of many trees; mirrors, glass, total reflection, lamps
@@ -145,7 +145,7 @@ fn a_pixel_of_the_mirror_in_the_room() {
 
 #[test]
 fn a_pixel_that_meets_nothing_takes_one_step() {
-    let scene = scenes::open("whitted", None).unwrap();
+    let scene = scenes::opened("whitted", None);
     let walk = walked("whitted", &scene, [0, 0], 5);
     assert_eq!(walk.steps.len(), 1);
     let text = walk.to_text();
@@ -161,8 +161,8 @@ fn every_number_is_one_and_names_are_harmless() {
     let hostile = parse_scene(BELOW_A_LAMP, "floor", Path::new("")).unwrap();
     let mut dark = hostile.clone();
     dark.scene.lights.clear();
-    let flake = scenes::open("flake", Some("1")).unwrap();
-    let whitted = scenes::open("whitted", None).unwrap();
+    let flake = scenes::opened("flake", Some("1"));
+    let whitted = scenes::opened("whitted", None);
     let mut last = String::new();
     for (name, loaded) in [
         ("floor", &hostile),

@@ -9,3 +9,17 @@ pub mod rays;
 pub mod scenes;
 pub mod step;
 pub mod volumes;
+
+use lancer_lesson::Chapter;
+
+/// The chapter.
+pub static CHAPTER: Chapter = Chapter {
+    number: "4",
+    folder: "4-accel",
+    title: "Accélération du lancer de rayons",
+    figures: figures::FIGURES,
+    course: &exercises::COURSE,
+    scenes: &scenes::SCENES,
+    methods: &[],
+    walks: &[step::WALK],
+};

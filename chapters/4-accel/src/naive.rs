@@ -1,11 +1,11 @@
 //! Indexes as they are often written, and what they lose: the rivals of plate 4.11.
 
-use chapter_1::naive::min_max_box;
 use glam::{DVec3, Vec3A};
 use lancer_accel::Grid;
 use lancer_core::geometry::{Bounds3, Interval, Ray};
 use lancer_core::intersector::{Hit, Probe};
 use lancer_core::scene::{PrimitiveId, Scene};
+use lancer_lesson::naive::min_max_box;
 use obvhs::BvhBuildParams;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;

@@ -6,6 +6,7 @@ use lancer_core::Rgb;
 use lancer_core::sampling::Uniform;
 use lancer_core::scene::load::{Loaded, UNNAMED};
 use lancer_core::scene::{Camera, MaterialId, Mesh, PointLight, Scene};
+use lancer_lesson::scenes::{NamedScene, Source};
 
 /// A kind of scene.
 #[derive(Clone, Copy)]
@@ -60,14 +61,16 @@ pub fn family(name: &str) -> Family {
     found.unwrap_or_else(|| panic!("no kind of scene is called {name:?}"))
 }
 
-/// Opens a scene by the name of its kind, with about `count` triangles.
-///
-/// # Errors
-/// If the count is none.
-///
-/// # Panics
-/// If the name is unknown.
-pub fn open(name: &str, count: Option<&str>) -> Result<Loaded> {
+/// All kinds as scenes of the course, of 10,000 triangles unless another number is asked for.
+pub const SCENES: [NamedScene; 4] = [named("soup"), named("scan"), named("town"), named("stadium")];
+
+const fn named(name: &'static str) -> NamedScene {
+    let variants = "a number of triangles, such as stadium:100000";
+    NamedScene { name, source: Source::Generated { variants, make: sized } }
+}
+
+/// The scene of that kind, with about `count` triangles.
+fn sized(name: &str, count: Option<&str>) -> Result<Loaded> {
     let count = count.map_or(Some(10_000), |text| {
         text.parse().ok().filter(|count| (100..=10_000_000).contains(count))
     });
@@ -254,6 +257,14 @@ mod tests {
     use lancer_accel::structures::STRUCTURES;
 
     use super::*;
+
+    #[test]
+    fn every_kind_is_a_scene_of_the_course() {
+        assert_eq!(SCENES.map(|scene| scene.name), FAMILIES.map(|family| family.name));
+        for scene in SCENES {
+            assert!(scene.open(Some("300")).is_ok() && scene.open(Some("99")).is_err());
+        }
+    }
 
     #[test]
     fn scenes_have_about_as_many_triangles_as_asked_for() {

@@ -1,39 +1,45 @@
 //! A ray's walk through the indexes: what is told is what they do.
 
-use chapter_4::scenes::{family, open};
+use chapter_4::scenes::{SCENES, family};
 use chapter_4::step::record::{Event, Kind, Recorder};
-use chapter_4::step::{Request, walk};
+use chapter_4::step::walk;
 use glam::{DAffine3, DVec3};
 use insta::assert_snapshot;
-use lancer_accel::structures::{STRUCTURES, Structure, structure};
+use lancer_accel::structures::STRUCTURES;
 use lancer_core::geometry::{Bounds3, Interval};
 use lancer_core::image::ImageSize;
 use lancer_core::intersector::{Intersector, LinearScan, TestCounts};
 use lancer_core::scene::load::Loaded;
 use lancer_core::scene::{Mesh, Scene};
 use lancer_figure::Walk;
+use lancer_lesson::chapter::WalkOrder;
 
-fn walked(name: &str, loaded: &Loaded, pixel: [u32; 2], structures: &[Structure]) -> Walk {
-    walk(&Request { name, loaded, size: ImageSize::new(32, 32), pixel, structures })
+fn walked(name: &str, loaded: &Loaded, pixel: [u32; 2], index: Option<&str>) -> Walk {
+    let size = ImageSize::new(32, 32);
+    walk(&WalkOrder { name, loaded, size, pixel, max_depth: None, index })
 }
 
-fn text(name: &str, pixel: [u32; 2], structures: &[Structure]) -> String {
-    walked(name, &open(name, Some("100")).unwrap(), pixel, structures).to_text()
+fn text(name: &str, pixel: [u32; 2], index: Option<&str>) -> String {
+    walked(name, &opened(name, "100"), pixel, index).to_text()
+}
+
+fn opened(name: &str, count: &str) -> Loaded {
+    SCENES.iter().find(|scene| scene.name == name).unwrap().open(Some(count)).unwrap()
 }
 
 #[test]
 fn a_ray_through_the_bvh() {
-    assert_snapshot!(text("town", [16, 22], &[structure("bvh")]));
+    assert_snapshot!(text("town", [16, 22], Some("bvh")));
 }
 
 #[test]
 fn a_ray_through_the_grid() {
-    assert_snapshot!(text("town", [16, 22], &[structure("grid")]));
+    assert_snapshot!(text("town", [16, 22], Some("grid")));
 }
 
 #[test]
 fn the_table_of_all() {
-    let text = text("soup", [17, 12], &STRUCTURES);
+    let text = text("soup", [17, 12], None);
     let table = text.find("the ray ends").unwrap();
     assert_snapshot!(text[table..]);
 }
@@ -108,8 +114,8 @@ fn records_are_complete_and_in_the_right_place() {
 
 #[test]
 fn what_is_missed_or_empty_is_said() {
-    let loaded = open("scan", Some("300")).unwrap();
-    let corner = walked("scan", &loaded, [0, 0], &STRUCTURES).to_text();
+    let loaded = opened("scan", "300");
+    let corner = walked("scan", &loaded, [0, 0], None).to_text();
     assert!(corner.contains("linear ends: every primitive is tested"), "{corner}");
     assert!(corner.contains("grid ends: the ray misses the box around the scene"), "{corner}");
     assert!(corner.contains("bvh ends: no box is left on the ray's way"), "{corner}");
@@ -117,7 +123,7 @@ fn what_is_missed_or_empty_is_said() {
     let mut empty = loaded;
     let camera = empty.scene.camera;
     empty.scene = Scene { camera, ..Scene::of_mesh(Mesh::default()) };
-    let walk = walked("empty", &empty, [1, 2], &STRUCTURES);
+    let walk = walked("empty", &empty, [1, 2], None);
     let text = walk.to_text();
     assert_eq!(text.matches("ends: there is nothing in the scene").count(), STRUCTURES.len());
     assert!(!walk.to_html().contains("NaN"));
@@ -126,13 +132,13 @@ fn what_is_missed_or_empty_is_said() {
 #[test]
 fn every_number_is_one_at_any_scale() {
     for scale in [1e-30, 1.0, 1e30] {
-        let mut loaded = open("soup", Some("200")).unwrap();
+        let mut loaded = opened("soup", "200");
         let mut mesh = Mesh::default();
         mesh.append(&loaded.scene.mesh, DAffine3::from_scale(DVec3::splat(scale)), 0);
         loaded.scene.mesh = mesh;
         loaded.scene.camera.eye *= scale;
         loaded.scene.camera.look_at *= scale;
-        let walk = walked("\u{1b}[31m<script>", &loaded, [14, 16], &STRUCTURES);
+        let walk = walked("\u{1b}[31m<script>", &loaded, [14, 16], None);
         let (text, html) = (walk.to_text(), walk.to_html());
         assert!(!text.contains("NaN") && !text.contains("inf"), "{scale}: {text}");
         assert!(!text.contains("NOT"), "{text}");

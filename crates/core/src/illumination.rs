@@ -14,6 +14,7 @@
 use glam::DVec3;
 
 use crate::Rgb;
+use crate::geometry::Ray;
 use crate::optics::reflect;
 
 /// What a light contributes per unit of its intensity before the surface is looked at.
@@ -59,7 +60,7 @@ pub struct Reflectance {
     pub shininess: f64,
 }
 
-/// What one light sends to the eye by way of a surface: one term of the sum.
+/// What a surface sends to the eye of the light that arrives from one direction, per unit of it: the bracket of
 ///
 /// ```text
 /// eq:local                I_local = Σᵢ Iᵢ · vis(i) / dᵢ² · ( ρ_d (N·L) + ρ_s (R·V)ⁿ )
@@ -67,8 +68,6 @@ pub struct Reflectance {
 ///
 /// | slide        | here           |                                                        |
 /// |--------------|----------------|--------------------------------------------------------|
-/// | Iᵢ           | `intensity`    | of the light in the surface's direction                |
-/// | vis(i) / dᵢ² | `attenuation`  | [`attenuation`], `eq:attenuation`                       |
 /// | ρ_d, ρ_s, n  | `reflectance`  | [`Reflectance`]                                        |
 /// | N            | `n`            | unit, on the eye's side                                |
 /// | L            | `to_light`     | unit, from the surface to the light                    |
@@ -76,20 +75,14 @@ pub struct Reflectance {
 /// | R            | inside         | the mirror of L: L comes in as −L, so R leaves the surface |
 ///
 /// Both products are 0 below the horizon: a light behind the surface does not shine on it, and an
-/// even power of a negative R·V would light the wrong side.
+/// even power of a negative R·V would light the wrong side. [`lit`] is the sum; its Iᵢ/dᵢ² come in as
+/// [`Arriving`].
 ///
 /// Slide « Modèle Local ». (The slide's sum runs from 0 to nbLum, one light too many.)
 #[doc(alias = "eq:local")]
 #[doc(alias = "modèle local")]
 #[inline]
-pub fn local(
-    intensity: Rgb,
-    attenuation: f64,
-    reflectance: &Reflectance,
-    n: DVec3,
-    to_light: DVec3,
-    to_eye: DVec3,
-) -> Rgb {
+pub fn local(reflectance: &Reflectance, n: DVec3, to_light: DVec3, to_eye: DVec3) -> Rgb {
     let cos_light = n.dot(to_light);
     if cos_light <= 0.0 {
         return Rgb::ZERO;
@@ -101,5 +94,53 @@ pub fn local(
             reflected += reflectance.specular * cos_mirror.powf(reflectance.shininess);
         }
     }
-    intensity * attenuation * reflected
+    reflected
+}
+
+/// Light that arrives at a surface unless something is in its way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arriving {
+    /// From the surface to the light, which it reaches at t = 1.
+    pub shadow_ray: Ray,
+    /// L, the unit direction of that ray.
+    pub to_light: DVec3,
+    /// Iᵢ/dᵢ²: of a point source, or of a sample of a lamp over its density.
+    pub radiance: Rgb,
+}
+
+/// The light that leaves a surface without the help of other surfaces.
+///
+/// ```text
+/// algo:appel              ε + ρ̄ I_a + Σᵢ Iᵢ vis(i)/dᵢ² ( ρ_d (N·L) + ρ_s (R·V)ⁿ )
+/// ```
+///
+/// `unlit` is ε + ρ̄ I_a, to which the sum is added light by light; `n` is the unit shading normal on the eye's
+/// side; `to_eye` is unit and points away from the surface. vis(i), `visible`, is asked last: no shadow ray is
+/// cast to a light that would add nothing, because it is behind the surface or makes only a highlight that the eye
+/// does not see.
+///
+/// Slides « Élimination des parties cachées [Appel 68] », « Modèle Local : calcul des ombres
+/// portées ».
+#[doc(alias = "algo:appel")]
+#[doc(alias = "ombres portées")]
+#[inline]
+pub fn lit(
+    unlit: Rgb,
+    reflectance: &Reflectance,
+    n: DVec3,
+    to_eye: DVec3,
+    arriving: impl IntoIterator<Item = Arriving>,
+    mut visible: impl FnMut(&Ray) -> bool,
+) -> Rgb {
+    let mut radiance = unlit;
+    if reflectance.diffuse == Rgb::ZERO && reflectance.specular == Rgb::ZERO {
+        return radiance;
+    }
+    for light in arriving {
+        let unshadowed = light.radiance * local(reflectance, n, light.to_light, to_eye);
+        if unshadowed != Rgb::ZERO && visible(&light.shadow_ray) {
+            radiance += unshadowed;
+        }
+    }
+    radiance
 }

@@ -2,6 +2,10 @@
 
 use glam::DVec3;
 
+use crate::Rgb;
+use crate::scene::Material;
+use crate::world::SurfacePoint;
+
 /// How far the length of a unit vector may be from 1: a hundred reflections of one direction stay
 /// within it.
 const UNIT: f64 = 1e-9;
@@ -62,4 +66,52 @@ pub fn refract(incident: DVec3, n: DVec3, n1: f64, n2: f64) -> Option<DVec3> {
     let sin1_squared = (1.0 - cos1) * (1.0 + cos1);
     let cos2_squared = 1.0 - eta * eta * sin1_squared;
     (cos2_squared >= 0.0).then(|| eta * incident + (eta * cos1 - cos2_squared.sqrt()) * n)
+}
+
+/// n₁ and n₂ of `eq:descartes`, before and behind a surface that a ray meets along `incident`: the outside, where
+/// the geometric normal points, has the index 1.
+#[inline]
+pub fn indices(surface: &SurfacePoint, material: &Material, incident: DVec3) -> [f64; 2] {
+    if surface.geometric_normal.dot(incident) < 0.0 {
+        [1.0, material.refractive_index]
+    } else {
+        [material.refractive_index, 1.0]
+    }
+}
+
+/// The two directions that `eq:recursion` follows from a surface, each with its share.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Branches {
+    /// The share k_s of the mirror ray, after total reflection k_s + k_t, and its unit direction; `None` if the
+    /// share is 0.
+    pub mirror: Option<(Rgb, DVec3)>,
+    /// The share k_t of the refracted ray and its unit direction; `None` if the share is 0, and at total
+    /// reflection.
+    pub refracted: Option<(Rgb, DVec3)>,
+}
+
+impl Branches {
+    /// Where a ray of unit direction `incident` goes on from `surface`, which is made of `material`.
+    ///
+    /// At total reflection what does not pass goes the way of the mirror: there is no other.
+    #[inline]
+    pub fn new(surface: &SurfacePoint, material: &Material, incident: DVec3) -> Self {
+        let (mut k_s, k_t) = (material.k_s, material.k_t);
+        let n = surface.optical_normal(incident);
+        let mut refracted = None;
+        if k_t != Rgb::ZERO {
+            let [n1, n2] = indices(surface, material, incident);
+            match refract(incident, n, n1, n2) {
+                Some(direction) => refracted = Some((k_t, direction)),
+                None => k_s += k_t,
+            }
+        }
+        let mirror = (k_s != Rgb::ZERO).then(|| (k_s, reflect(incident, n)));
+        Self { mirror, refracted }
+    }
+
+    /// k_s and k_t of `eq:recursion`, once it is known whether the reflection is total.
+    pub fn shares(&self) -> [Rgb; 2] {
+        [self.mirror, self.refracted].map(|branch| branch.map_or(Rgb::ZERO, |(share, _)| share))
+    }
 }

@@ -4,14 +4,13 @@
 use std::ops::AddAssign;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::Rgb;
 use crate::geometry::{Interval, Ray};
 use crate::image::{Image, ImageSize};
 use crate::intersector::Hit;
-use crate::sampling::PixelSampling;
+use crate::sampling::{PixelSampling, Sample};
 use crate::scene::PrimaryRays;
 use crate::world::World;
 
@@ -35,11 +34,20 @@ impl Default for Control<'_> {
     }
 }
 
+impl Control<'_> {
+    /// Whether to stop: what fills a tile for long asks now and then.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+}
+
 /// A picture and what it took to compute it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rendering<C> {
     /// The picture.
     pub image: Image,
+    /// How many samples are in each pixel, row by row.
+    pub samples: Vec<u32>,
     /// Deterministic counts of the work, summed over all tiles.
     pub counts: C,
 }
@@ -49,75 +57,170 @@ pub struct Rendering<C> {
 #[error("rendering was cancelled")]
 pub struct Cancelled;
 
-/// A rectangle of the picture on its way to being filled.
-#[derive(Debug)]
-pub struct Tile {
+/// A picture in the making: for each pixel the sum of its samples in `f64`, in their order, and their number.
+///
+/// A picture that is continued, by more samples or after it was cancelled, has the bits of one that never
+/// was interrupted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film<C> {
+    size: ImageSize,
+    tiles: Vec<Tile<C>>,
+}
+
+/// A rectangle of a [`Film`], which one thread fills.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tile<C> {
     /// Column of its first pixel in the picture.
     pub x: u32,
     /// Row of its first pixel in the picture.
     pub y: u32,
     /// Width and height.
     pub size: ImageSize,
-    pixels: Vec<[f32; 3]>,
+    /// Counts of the work in it.
+    pub counts: C,
+    sums: Vec<Rgb>,
+    taken: Vec<u32>,
 }
 
-impl Tile {
-    /// Sets the pixel in column `x` and row `y` of the *picture*.
+impl<C: AddAssign + Default + Send> Film<C> {
+    /// A black picture, in tiles of so many pixels a side, at least 1.
+    pub fn new(size: ImageSize, side: u32) -> Self {
+        let (across, down) = (size.width.div_ceil(side), size.height.div_ceil(side));
+        let tile = |index: u32| {
+            let (x, y) = (index % across * side, index / across * side);
+            let size = ImageSize::new(side.min(size.width - x), side.min(size.height - y));
+            // The thread that fills it makes its room.
+            Tile { x, y, size, counts: C::default(), sums: Vec::new(), taken: Vec::new() }
+        };
+        Self { size, tiles: (0..across * down).map(tile).collect() }
+    }
+
+    /// Goes through all tiles: `fill` sets or samples as many pixels of the tile as it likes.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if [`Control::cancelled`] was set before the last tile was done.
+    pub fn fill(
+        &mut self,
+        control: Control,
+        fill: impl Fn(&mut Tile<C>) + Sync,
+    ) -> Result<(), Cancelled> {
+        let pixels_done = AtomicU64::new(0);
+        self.tiles.par_iter_mut().for_each(|tile| {
+            if control.is_cancelled() {
+                return;
+            }
+            let pixels = tile.size.pixels();
+            tile.sums.resize(pixels, Rgb::ZERO);
+            tile.taken.resize(pixels, 0);
+            fill(tile);
+            let pixels = pixels as u64;
+            (control.progress)(pixels_done.fetch_add(pixels, Ordering::Relaxed) + pixels);
+        });
+        if control.is_cancelled() { Err(Cancelled) } else { Ok(()) }
+    }
+
+    /// Samples all pixels as [`Tile::sample`] does.
+    ///
+    /// # Errors
+    /// As [`Film::fill`].
+    pub fn sample(
+        &mut self,
+        sampling: PixelSampling,
+        control: Control,
+        estimator: &impl Estimator<C>,
+    ) -> Result<(), Cancelled> {
+        self.fill(control, |tile| tile.sample(sampling, control, |_, _| true, estimator))
+    }
+
+    /// The picture as it stands: a pixel is the mean of its samples, black without any.
+    pub fn finish(self) -> Rendering<C> {
+        let mut image = Image::new(self.size);
+        let mut samples = vec![0; self.size.pixels()];
+        let mut counts = C::default();
+        let developed = |tile: Tile<C>| (tile.pixels(), tile);
+        let tiles: Vec<_> = self.tiles.into_par_iter().map(developed).collect();
+        for (pixels, tile) in tiles {
+            image.paste(tile.x, tile.y, tile.size, &pixels);
+            for (row, taken) in tile.taken.chunks(tile.size.width as usize).enumerate() {
+                let start = (tile.y as usize + row) * self.size.width as usize + tile.x as usize;
+                samples[start..start + taken.len()].copy_from_slice(taken);
+            }
+            counts += tile.counts;
+        }
+        Rendering { image, samples, counts }
+    }
+}
+
+impl<C> Tile<C> {
+    /// Sets the pixel in column `x` and row `y` of the *picture* to a radiance that is known: it counts as one
+    /// sample, whatever was there.
     #[inline]
     pub fn set(&mut self, x: u32, y: u32, radiance: Rgb) {
         let index = (y - self.y) as usize * self.size.width as usize + (x - self.x) as usize;
-        self.pixels[index] = radiance.to_array().map(narrow);
+        (self.sums[index], self.taken[index]) = (radiance, 1);
     }
 
-    /// Column and row in the picture of one of its pixels, counted row by row.
-    fn place(&self, pixel: usize) -> (u32, u32) {
-        let (pixel, width) = (pixel as u32, self.size.width);
-        (self.x + pixel % width, self.y + pixel / width)
+    /// Columns and rows in the picture of its pixels, row by row.
+    pub fn places(&self) -> impl Iterator<Item = (u32, u32)> + use<C> {
+        let (x, y, size) = (self.x, self.y, self.size);
+        (y..y + size.height)
+            .flat_map(move |row| (x..x + size.width).map(move |column| (column, row)))
     }
 
-    /// Sets the wanted pixels; stops early when cancelled, since a pixel of many samples may take long.
-    fn fill<C>(
+    /// Takes the samples of the wanted pixels that they still lack. It stops early when cancelled, since a
+    /// pixel of many samples may take long; what has been taken by then stays.
+    pub fn sample(
         &mut self,
         sampling: PixelSampling,
         control: Control,
         wanted: impl Fn(u32, u32) -> bool,
-        film: &impl Film<C>,
-        counts: &mut C,
+        estimator: &impl Estimator<C>,
     ) {
-        let mut sums = vec![Rgb::ZERO; self.pixels.len()];
-        let (mut points, mut owners) = (Vec::with_capacity(BATCH), Vec::with_capacity(BATCH));
+        let (mut samples, mut owners) = (Vec::with_capacity(BATCH), Vec::with_capacity(BATCH));
         let mut answers = vec![Rgb::ZERO; BATCH];
-        let mut flush = |points: &mut Vec<DVec2>, owners: &mut Vec<usize>| {
-            let answers = &mut answers[..points.len()];
-            film.radiance(points, answers, counts);
-            for (owner, answer) in owners.drain(..).zip(answers) {
-                sums[owner] += *answer;
-            }
-            points.clear();
-        };
         for (column, row) in neighbours_together(self.size) {
             let (x, y) = (self.x + column, self.y + row);
             if !wanted(x, y) {
                 continue;
             }
-            for point in sampling.points(x, y) {
-                points.push(point);
-                owners.push((row * self.size.width + column) as usize);
-                if points.len() == BATCH {
-                    if control.cancelled.load(Ordering::Relaxed) {
+            let owner = (row * self.size.width + column) as usize;
+            for sample in sampling.some_of_pixel(x, y, self.taken[owner]..sampling.samples) {
+                samples.push(sample);
+                owners.push(owner);
+                if samples.len() == BATCH {
+                    if control.is_cancelled() {
                         return;
                     }
-                    flush(&mut points, &mut owners);
+                    self.answer(&mut samples, &mut owners, &mut answers, estimator);
                 }
             }
         }
-        flush(&mut points, &mut owners);
-        for (owner, sum) in sums.into_iter().enumerate() {
-            let (x, y) = self.place(owner);
-            if wanted(x, y) {
-                self.set(x, y, sum / f64::from(sampling.samples));
-            }
+        self.answer(&mut samples, &mut owners, &mut answers, estimator);
+    }
+
+    /// Adds what arrives at samples to the pixels that own them.
+    fn answer(
+        &mut self,
+        samples: &mut Vec<Sample>,
+        owners: &mut Vec<usize>,
+        answers: &mut [Rgb],
+        estimator: &impl Estimator<C>,
+    ) {
+        let answers = &mut answers[..samples.len()];
+        estimator.radiance(samples, answers, &mut self.counts);
+        for (owner, answer) in owners.drain(..).zip(answers) {
+            self.sums[owner] += *answer;
+            self.taken[owner] += 1;
         }
+        samples.clear();
+    }
+
+    /// Its pixels as they are stored.
+    fn pixels(&self) -> Vec<[f32; 3]> {
+        let mean =
+            |(sum, taken): (&Rgb, &u32)| (*sum / f64::from((*taken).max(1))).to_array().map(narrow);
+        let pixels: Vec<_> = self.sums.iter().zip(&self.taken).map(mean).collect();
+        if pixels.is_empty() { vec![[0.0; 3]; self.size.pixels()] } else { pixels }
     }
 }
 
@@ -147,47 +250,50 @@ fn every_second_bit(code: u64) -> u32 {
     bits as u32
 }
 
-/// What arrives at points of the film. A function of one point, in pixels, and the counts is one;
-/// [`Seen`] is another.
-pub trait Film<C>: Sync {
-    /// The radiance at each point, into the slice of the same length.
-    fn radiance(&self, points: &[DVec2], radiance: &mut [Rgb], counts: &mut C);
+/// Estimates the radiance that arrives at samples. A function of a sample and the counts is an estimator, and
+/// so is [`PrimaryHits`].
+pub trait Estimator<C>: Sync {
+    /// The radiance at each sample, into the slice of the same length.
+    fn radiance(&self, samples: &[Sample], radiance: &mut [Rgb], counts: &mut C);
 }
 
-impl<C, F: Fn(DVec2, &mut C) -> Rgb + Sync> Film<C> for F {
-    fn radiance(&self, points: &[DVec2], radiance: &mut [Rgb], counts: &mut C) {
-        for (point, radiance) in points.iter().zip(radiance) {
-            *radiance = self(*point, counts);
+impl<C, F: Fn(&Sample, &mut C) -> Rgb + Sync> Estimator<C> for F {
+    fn radiance(&self, samples: &[Sample], radiance: &mut [Rgb], counts: &mut C) {
+        for (sample, radiance) in samples.iter().zip(radiance) {
+            *radiance = self(sample, counts);
         }
     }
 }
 
-/// What the scene's camera sees: primary rays are answered together, which is faster with some indexes;
-/// `shade` tells what comes back along each.
-pub struct Seen<'a, F> {
+/// What the scene's camera sees first at each sample: the primary rays of a batch are answered together, which
+/// is faster with some indexes, and `shade` tells what comes back along each.
+pub struct PrimaryHits<'a, F> {
     world: World<'a>,
     rays: PrimaryRays,
     shade: F,
 }
 
-impl<'a, F> Seen<'a, F> {
+impl<'a, F> PrimaryHits<'a, F> {
     /// For pictures of one size.
     pub fn new<C>(world: World<'a>, size: ImageSize, shade: F) -> Self
     where
-        F: Fn(&Ray, Option<Hit>, &mut C) -> Rgb,
+        F: Fn(&Ray, Option<Hit>, &Sample, &mut C) -> Rgb,
     {
         Self { world, rays: world.scene.camera.primary_rays(size), shade }
     }
 }
 
-impl<C, F: Fn(&Ray, Option<Hit>, &mut C) -> Rgb + Sync> Film<C> for Seen<'_, F> {
-    fn radiance(&self, points: &[DVec2], radiance: &mut [Rgb], counts: &mut C) {
-        let rays: Vec<Ray> =
-            points.iter().map(|point| self.rays.through(point.x, point.y)).collect();
+impl<C, F> Estimator<C> for PrimaryHits<'_, F>
+where
+    F: Fn(&Ray, Option<Hit>, &Sample, &mut C) -> Rgb + Sync,
+{
+    fn radiance(&self, samples: &[Sample], radiance: &mut [Rgb], counts: &mut C) {
+        let through = |sample: &Sample| self.rays.through(sample.film.x, sample.film.y);
+        let rays: Vec<Ray> = samples.iter().map(through).collect();
         let mut hits = vec![None; rays.len()];
         self.world.index.closest_hits(&rays, Interval::POSITIVE, &mut hits);
-        for ((ray, hit), radiance) in rays.iter().zip(hits).zip(radiance) {
-            *radiance = (self.shade)(ray, hit, counts);
+        for (((ray, hit), sample), radiance) in rays.iter().zip(hits).zip(samples).zip(radiance) {
+            *radiance = (self.shade)(ray, hit, sample, counts);
         }
     }
 }
@@ -202,59 +308,19 @@ fn narrow(channel: f64) -> f32 {
     }
 }
 
-/// Renders tile by tile: `fill` computes every pixel of the tile it is given.
-///
-/// # Errors
-/// [`Cancelled`] if [`Control::cancelled`] was set before the last tile was done.
-pub fn render_tiles<C: AddAssign + Default + Send>(
-    size: ImageSize,
-    control: Control,
-    fill: impl Fn(&mut Tile, &mut C) + Sync,
-) -> Result<Rendering<C>, Cancelled> {
-    let across = size.width.div_ceil(control.tile);
-    let down = size.height.div_ceil(control.tile);
-    let pixels_done = AtomicU64::new(0);
-    let tiles: Option<Vec<(Tile, C)>> = (0..across * down)
-        .into_par_iter()
-        .map(|index| {
-            if control.cancelled.load(Ordering::Relaxed) {
-                return None;
-            }
-            let (x, y) = (index % across * control.tile, index / across * control.tile);
-            let width = control.tile.min(size.width - x);
-            let height = control.tile.min(size.height - y);
-            let size = ImageSize::new(width, height);
-            let mut tile = Tile { x, y, size, pixels: vec![[0.0; 3]; size.pixels()] };
-            let mut counts = C::default();
-            fill(&mut tile, &mut counts);
-            let pixels = size.pixels() as u64;
-            (control.progress)(pixels_done.fetch_add(pixels, Ordering::Relaxed) + pixels);
-            Some((tile, counts))
-        })
-        .collect();
-
-    let mut rendering = Rendering { image: Image::new(size), counts: C::default() };
-    let tiles = tiles.filter(|_| !control.cancelled.load(Ordering::Relaxed)).ok_or(Cancelled)?;
-    for (tile, counts) in tiles {
-        rendering.image.paste(tile.x, tile.y, tile.size, &tile.pixels);
-        rendering.counts += counts;
-    }
-    Ok(rendering)
-}
-
 /// Renders pixel by pixel: a pixel is the mean of its samples, summed in `f64` in their order.
 ///
 /// # Errors
-/// As [`render_tiles`].
+/// As [`Film::fill`].
 pub fn render_pixels<C: AddAssign + Default + Send>(
     size: ImageSize,
     sampling: PixelSampling,
     control: Control,
-    film: impl Film<C>,
+    estimator: impl Estimator<C>,
 ) -> Result<Rendering<C>, Cancelled> {
-    render_tiles(size, control, |tile, counts| {
-        tile.fill(sampling, control, |_, _| true, &film, counts);
-    })
+    let mut film = Film::new(size, control.tile);
+    film.sample(sampling, control, &estimator)?;
+    Ok(film.finish())
 }
 
 /// Renders pixels in detail only where the picture has some: first the centre of each, then all
@@ -266,28 +332,27 @@ pub fn render_pixels<C: AddAssign + Default + Send>(
 /// [`Control::progress`] is told of each of the two passes over the picture.
 ///
 /// # Errors
-/// As [`render_tiles`].
+/// As [`Film::fill`].
 pub fn render_adaptive<C: AddAssign + Default + Send>(
     size: ImageSize,
     sampling: PixelSampling,
     contrast: f64,
     control: Control,
-    film: impl Film<C>,
+    estimator: impl Estimator<C>,
 ) -> Result<Rendering<C>, Cancelled> {
-    let centers = render_tiles(size, control, |tile, counts| {
-        tile.fill(PixelSampling::CENTER, control, |_, _| true, &film, counts);
-    })?;
+    let mut film = Film::new(size, control.tile);
+    film.sample(sampling.pilot(), control, &estimator)?;
+    let centers = film.finish();
     let detailed = detailed(&centers.image, contrast);
     let is_detailed = |x: u32, y: u32| detailed[(y * size.width + x) as usize];
-    let mut refined = render_tiles(size, control, |tile, counts| {
-        tile.fill(sampling, control, is_detailed, &film, counts);
-        for pixel in 0..tile.size.pixels() {
-            let (x, y) = tile.place(pixel);
-            if !is_detailed(x, y) {
-                tile.set(x, y, centers.image.get(x, y));
-            }
+    let mut film = Film::new(size, control.tile);
+    film.fill(control, |tile| {
+        tile.sample(sampling, control, is_detailed, &estimator);
+        for (x, y) in tile.places().filter(|&(x, y)| !is_detailed(x, y)) {
+            tile.set(x, y, centers.image.get(x, y));
         }
     })?;
+    let mut refined = film.finish();
     refined.counts += centers.counts;
     Ok(refined)
 }
@@ -314,13 +379,15 @@ fn detailed(image: &Image, contrast: f64) -> Vec<bool> {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec2;
+
     use super::*;
     use crate::sampling::Pattern;
 
     /// Counts samples.
-    fn half_plane(film: DVec2, samples: &mut u64) -> Rgb {
+    fn half_plane(sample: &Sample, samples: &mut u64) -> Rgb {
         *samples += 1;
-        if film.x + 0.3 * film.y < 9.7 { Rgb::ONE } else { Rgb::ZERO }
+        if sample.film.x + 0.3 * sample.film.y < 9.7 { Rgb::ONE } else { Rgb::ZERO }
     }
 
     /// A faulty sample is not spread over its neighbours, and a radiance beyond `f32` is no fault.
@@ -329,8 +396,8 @@ mod tests {
         let size = ImageSize::new(9, 7);
         for faulty in [f64::NAN, f64::INFINITY, 1e40, 1e300] {
             let first = AtomicBool::new(true);
-            let radiance = |film: DVec2, _: &mut u64| {
-                let here = film.floor() == DVec2::new(4.0, 3.0);
+            let radiance = |sample: &Sample, _: &mut u64| {
+                let here = sample.film.floor() == DVec2::new(4.0, 3.0);
                 Rgb::splat(if here && first.swap(false, Ordering::Relaxed) { faulty } else { 0.5 })
             };
             let sampling = PixelSampling { pattern: Pattern::Owen, samples: 4, seed: 1 };
@@ -391,12 +458,92 @@ mod tests {
     #[test]
     fn a_flat_picture_costs_one_sample_per_pixel() {
         let sampling = PixelSampling { pattern: Pattern::Owen, samples: 64, seed: 5 };
-        let flat = |_: DVec2, samples: &mut u64| {
+        let flat = |_: &Sample, samples: &mut u64| {
             *samples += 1;
             Rgb::splat(0.5)
         };
         let size = ImageSize::new(5, 7);
         let rendering = render_adaptive(size, sampling, 0.0, Control::default(), flat).unwrap();
         assert_eq!(rendering.counts, 35);
+    }
+
+    const SIZE: ImageSize = ImageSize::new(21, 9);
+
+    fn noise(seed: u64, samples: u32) -> (PixelSampling, impl Fn(&Sample, &mut u64) -> Rgb + Sync) {
+        let sampling = PixelSampling { pattern: Pattern::Owen, samples, seed };
+        let radiance = |sample: &Sample, count: &mut u64| {
+            *count += 1;
+            let [a, b, c, _] = sample.numbers(1);
+            // Sums of such numbers depend on their order.
+            Rgb::new(a, b * 1e8, c / 3.0)
+        };
+        (sampling, radiance)
+    }
+
+    /// Continued in steps, by tiles of another size, or after it was cancelled in the middle of a tile: the same
+    /// sums, samples and counts.
+    #[test]
+    fn a_continued_picture_equals_one_never_interrupted() {
+        let (sampling, radiance) = noise(4, 300);
+        let whole = render_pixels(SIZE, sampling, Control::default(), &radiance).unwrap();
+
+        let mut film = Film::new(SIZE, 5);
+        for samples in [1, 7, 64, 64, 299, 300] {
+            let some = PixelSampling { samples, ..sampling };
+            film.sample(some, Control::default(), &radiance).unwrap();
+        }
+        assert!(film.finish() == whole);
+
+        let cancelled = AtomicBool::new(false);
+        let answered = AtomicU64::new(0);
+        let stopping = |sample: &Sample, count: &mut u64| {
+            if answered.fetch_add(1, Ordering::Relaxed) == 1000 {
+                cancelled.store(true, Ordering::Relaxed);
+            }
+            radiance(sample, count)
+        };
+        let mut film = Film::new(SIZE, 16);
+        let control = Control { cancelled: &cancelled, ..Control::default() };
+        assert_eq!(film.sample(sampling, control, &stopping), Err(Cancelled));
+        let half = film.clone().finish();
+        assert!(half.counts > 0 && half.counts < whole.counts && half.image != whole.image);
+        cancelled.store(false, Ordering::Relaxed);
+        film.sample(sampling, control, &radiance).unwrap();
+        assert!(film.finish() == whole);
+    }
+
+    /// A tile set as a whole, one sampled in part, one pixel by pixel.
+    #[test]
+    fn a_tile_is_filled_as_its_owner_likes() {
+        let (sampling, radiance) = noise(4, 3);
+        let whole = render_pixels(SIZE, sampling, Control::default(), &radiance).unwrap();
+        let mut film = Film::new(SIZE, 7);
+        let is_set = |x: u32, y: u32| x < 7 || x < 14 && (x + y) % 2 == 0;
+        film.fill(Control::default(), |tile| {
+            for (x, y) in tile.places() {
+                if is_set(x, y) {
+                    tile.set(x, y, Rgb::splat(0.25));
+                } else if tile.x == 14 {
+                    tile.sample(sampling, Control::default(), |a, b| (a, b) == (x, y), &radiance);
+                }
+            }
+            tile.sample(sampling, Control::default(), |x, y| !is_set(x, y), &radiance);
+        })
+        .unwrap();
+        let mixed = film.finish();
+        for y in 0..9 {
+            for x in 0..21 {
+                let (pixel, k) = (mixed.image.get(x, y), (y * 21 + x) as usize);
+                if is_set(x, y) {
+                    assert_eq!((pixel, mixed.samples[k]), (Rgb::splat(0.25), 1));
+                } else {
+                    assert_eq!((pixel, mixed.samples[k]), (whole.image.get(x, y), 3));
+                }
+            }
+        }
+        assert_eq!(
+            mixed.counts,
+            3 * (0..9).map(|y| (0..21).filter(|&x| !is_set(x, y)).count() as u64).sum::<u64>()
+        );
     }
 }

@@ -1,21 +1,18 @@
 //! A scene with an index of it, and what a hit tells about the surface there.
 
-use std::f64::consts::PI;
-
 use glam::DVec3;
 
 use crate::Rgb;
-use crate::geometry::{Bounds3, Ray, gamma, leave_surface};
+use crate::geometry::{Ray, gamma, leave_surface};
+use crate::illumination::Reflectance;
 use crate::intersector::{Hit, Intersector};
 use crate::optics::reflect;
-use crate::scene::{Material, MaterialId, Scene};
+use crate::scene::{MaterialId, Scene};
 
 /// Rounded operations between a triangle's corners and the point that its weights give.
 const POSITION: u32 = 7;
 /// The same from a sphere to a point of it, and back to the sign of |o − c|² − r² there.
 const SPHERE: u32 = 12;
-/// Rounded operations behind the end of a shadow ray, with room for its test against the face there.
-const SHADOW_END: u32 = 256;
 /// Rounded operations of [`leave_surface`] itself.
 const LEAVING: u32 = 4;
 
@@ -59,10 +56,25 @@ impl Scene {
         }
     }
 
-    /// The material of a surface.
+    /// The constants of `eq:local` there.
     #[inline]
-    pub fn material(&self, id: MaterialId) -> &Material {
-        &self.materials[id.0 as usize]
+    pub fn reflectance(&self, surface: &SurfacePoint) -> Reflectance {
+        let material = self.material(surface.material);
+        Reflectance {
+            diffuse: material.rho_d.at(surface.position, surface.geometric_normal),
+            specular: material.rho_s,
+            shininess: material.shininess,
+        }
+    }
+
+    /// ε: the radiance that the surface itself sends in the direction `to_eye`. It shines from its outside only.
+    #[inline]
+    pub fn emitted(&self, surface: &SurfacePoint, to_eye: DVec3) -> Rgb {
+        if surface.geometric_normal.dot(to_eye) > 0.0 {
+            self.material(surface.material).emission
+        } else {
+            Rgb::ZERO
+        }
     }
 
     #[inline]
@@ -173,81 +185,5 @@ impl SurfacePoint {
         let start = if outwards { self.lifted } else { self.position };
         let origin = leave_surface(start, self.error, self.geometric_normal, target - start);
         Ray::new(origin, target - origin)
-    }
-}
-
-/// A light as methods without area lights see it: a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PointSource {
-    /// Where it stands.
-    pub position: DVec3,
-    /// I_i of [`PointLight::intensity`](crate::scene::PointLight::intensity), in the brightest direction.
-    pub intensity: Rgb,
-    /// For an emitting face its unit normal, the brightest direction; `None` shines everywhere alike.
-    pub facing: Option<DVec3>,
-}
-
-impl PointSource {
-    /// The intensity in the direction `-to_light`, where `to_light` is unit and points at the source.
-    #[inline]
-    pub fn intensity_towards(&self, to_light: DVec3) -> Rgb {
-        match self.facing {
-            None => self.intensity,
-            Some(n) => self.intensity * (-n.dot(to_light)).max(0.0),
-        }
-    }
-}
-
-impl Scene {
-    /// All lights as points: the point lights, then each emitting face.
-    ///
-    /// A face of area A and radiance L becomes a source of intensity L·A·cos θ / π at its centroid (the
-    /// same power with the same cosine, so that only its size, the penumbra, is lost): π, because a
-    /// white surface that sees the radiance L all around sends back L. It stands
-    /// off the face, on the side it shines to, by more than a shadow ray from anywhere in the scene can
-    /// err at its end.
-    pub fn point_sources(&self) -> Vec<PointSource> {
-        let points = self.lights.iter().map(|light| PointSource {
-            position: light.position,
-            intensity: light.intensity,
-            facing: None,
-        });
-        points.chain(self.emitting_faces()).collect()
-    }
-
-    fn emitting_faces(&self) -> impl Iterator<Item = PointSource> + '_ {
-        let mesh = &self.mesh;
-        let emits = |face: &crate::scene::Face| self.material(face.material).emits();
-        let any = self.materials.iter().any(Material::emits);
-        let groups = if any { mesh.triangles.as_slice() } else { &[] };
-        // The largest coordinate bounds the rounding of a ray's end and of the face there.
-        let bounds = if any { self.bounds() } else { Bounds3::EMPTY };
-        let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
-        let mut first = 0;
-        groups
-            .chunk_by(|a, b| a.face == b.face)
-            .map(move |group| {
-                let range = first..first + group.len();
-                first = range.end;
-                (mesh.faces[group[0].face.0 as usize], range)
-            })
-            .filter(move |(face, _)| emits(face))
-            .filter_map(move |(face, triangles)| {
-                let (mut area_vector, mut moment, mut area) = (DVec3::ZERO, DVec3::ZERO, 0.0);
-                for index in triangles {
-                    let [a, b, c] = mesh.corners(index);
-                    let twice = (b - a).cross(c - a);
-                    area_vector += 0.5 * twice;
-                    area += 0.5 * twice.length();
-                    moment += 0.5 * twice.length() * (a + b + c) / 3.0;
-                }
-                let n = area_vector.try_normalize()?;
-                let centroid = moment / area;
-                Some(PointSource {
-                    position: centroid + gamma(SHADOW_END) * reach * n,
-                    intensity: self.material(face.material).emission * (area / PI),
-                    facing: Some(n),
-                })
-            })
     }
 }

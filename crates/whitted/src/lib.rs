@@ -12,11 +12,13 @@
 //! [`lancer_core::optics`].
 
 mod appel;
+mod methods;
 mod ray_tree;
 mod recorder;
 mod trace;
 
 pub use appel::{Appel, Lighting};
+pub use methods::METHODS;
 pub use ray_tree::{RayEnd, RayNode, RayTree, ShadowRay};
 pub use recorder::{Call, RayCounts, RayKind, Recorder};
 pub use trace::{AtLimit, Settings, Whitted, recursion};

@@ -1,7 +1,8 @@
+use glam::DVec3;
 use lancer_core::Rgb;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::intersector::Hit;
-use lancer_core::optics::{reflect, refract};
+use lancer_core::optics::Branches;
 use lancer_core::sampling::Uniform;
 use lancer_core::world::{SurfacePoint, World};
 
@@ -99,27 +100,27 @@ impl<'a> Whitted<'a> {
     /// The same if what the ray hits first is known.
     #[inline]
     pub fn shade<R: Recorder>(&self, ray: &Ray, hit: Option<Hit>, recorder: &mut R) -> Rgb {
-        self.lr_meeting(Call::primary(ray), recorder, |_| hit)
+        self.lr_with(Call::primary(ray), recorder, |_| hit)
     }
 
     fn lr<R: Recorder>(&self, call: Call, recorder: &mut R) -> Rgb {
         let index = self.lighting.world.index;
-        self.lr_meeting(call, recorder, |ray| index.closest_hit(ray, Interval::POSITIVE))
+        self.lr_with(call, recorder, |ray| index.closest_hit(ray, Interval::POSITIVE))
     }
 
-    /// LR, where `meets` tells what a ray hits first.
+    /// LR, where `first_hit` tells what a ray hits first.
     #[inline]
-    fn lr_meeting<R: Recorder>(
+    fn lr_with<R: Recorder>(
         &self,
         call: Call,
         recorder: &mut R,
-        meets: impl Fn(&Ray) -> Option<Hit>,
+        first_hit: impl Fn(&Ray) -> Option<Hit>,
     ) -> Rgb {
         let radiance =
             if call.depth > self.settings.max_depth || call.weight < self.settings.min_weight {
-                self.at_limit(call, recorder, meets)
+                self.at_limit(call, recorder, first_hit)
             } else {
-                self.follow(&call, recorder, meets)
+                self.follow(&call, recorder, first_hit)
             };
         recorder.leave(radiance);
         radiance
@@ -130,11 +131,11 @@ impl<'a> Whitted<'a> {
         &self,
         call: &Call,
         recorder: &mut R,
-        meets: impl Fn(&Ray) -> Option<Hit>,
+        first_hit: impl Fn(&Ray) -> Option<Hit>,
     ) -> Rgb {
         let scene = self.lighting.world.scene;
         recorder.enter(call);
-        match meets(&call.ray) {
+        match first_hit(&call.ray) {
             Some(hit) => {
                 let surface = scene.surface_at(&call.ray, &hit);
                 recorder.hit(&hit, &surface);
@@ -156,29 +157,14 @@ impl<'a> Whitted<'a> {
         let n = surface.shading_normal_towards(-incident);
         let local = self.lighting.surface(surface, n, -incident, recorder);
 
-        let (mut k_s, mut k_t) = (material.k_s, material.k_t);
-        let mut refracted = Rgb::ZERO;
-        let n = surface.optical_normal(incident);
-        if k_t != Rgb::ZERO {
-            let (n1, n2) = if surface.geometric_normal.dot(incident) < 0.0 {
-                (1.0, material.refractive_index)
-            } else {
-                (material.refractive_index, 1.0)
-            };
-            if let Some(direction) = refract(incident, n, n1, n2) {
-                refracted =
-                    self.lr(call.next(surface, direction, k_t, RayKind::Refracted), recorder);
-            } else {
-                // Total reflection: what does not pass goes the way of the mirror.
-                k_s += k_t;
-                k_t = Rgb::ZERO;
-            }
-        }
-        let mut reflected = Rgb::ZERO;
-        if k_s != Rgb::ZERO {
-            let direction = reflect(incident, n);
-            reflected = self.lr(call.next(surface, direction, k_s, RayKind::Mirror), recorder);
-        }
+        let branches = Branches::new(surface, material, incident);
+        let [k_s, k_t] = branches.shares();
+        let mut follow = |branch: Option<(Rgb, DVec3)>, kind| match branch {
+            Some((k, direction)) => self.lr(call.next(surface, direction, k, kind), recorder),
+            None => Rgb::ZERO,
+        };
+        let refracted = follow(branches.refracted, RayKind::Refracted);
+        let reflected = follow(branches.mirror, RayKind::Mirror);
         recursion(local, k_s, reflected, k_t, refracted)
     }
 
@@ -186,7 +172,7 @@ impl<'a> Whitted<'a> {
         &self,
         call: Call,
         recorder: &mut R,
-        meets: impl Fn(&Ray) -> Option<Hit>,
+        first_hit: impl Fn(&Ray) -> Option<Hit>,
     ) -> Rgb {
         let Settings { max_depth, min_weight, at_limit } = self.settings;
         if let AtLimit::Roulette { seed } = at_limit
@@ -197,7 +183,7 @@ impl<'a> Whitted<'a> {
             let turn = seed ^ u64::from(call.depth) << 32;
             if Uniform::of_ray(turn, &call.ray).number() < survival {
                 let survivor = Call { weight: min_weight, ..call };
-                return self.follow(&survivor, recorder, meets) / survival;
+                return self.follow(&survivor, recorder, first_hit) / survival;
             }
         }
         recorder.cut(&call);
@@ -213,7 +199,7 @@ impl<'a> Whitted<'a> {
 impl Call {
     /// LR(Pt-inter, `direction`, profondeur + 1).
     #[inline]
-    fn next(&self, surface: &SurfacePoint, direction: glam::DVec3, k: Rgb, kind: RayKind) -> Self {
+    fn next(&self, surface: &SurfacePoint, direction: DVec3, k: Rgb, kind: RayKind) -> Self {
         Self {
             ray: surface.spawn(direction),
             depth: self.depth + 1,

@@ -1,14 +1,11 @@
 //! The exercises of all chapters, in the course's order.
 
 use anyhow::{Result, bail};
-use lancer_exercise::{Card, Shelf};
+use lancer_exercise::Card;
 
+use crate::chapters::CHAPTERS;
 use crate::names::choose;
 use crate::repository::root;
-
-/// Each chapter's folder in `chapters/`, and its exercises.
-pub const SHELVES: [(&str, &dyn Shelf); 2] =
-    [("1-whitted", &chapter_1::exercises::COURSE), ("4-accel", &chapter_4::exercises::COURSE)];
 
 /// A chapter, as far as its exercises are concerned.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -30,11 +27,11 @@ pub struct Entry {
 
 /// All exercises.
 pub fn entries() -> Vec<Entry> {
-    let of_shelf = |(folder, shelf): (&'static str, &dyn Shelf)| {
-        let chapter = Chapter { folder, package: shelf.package() };
-        shelf.cards().into_iter().map(move |card| Entry { chapter, card })
+    let of_chapter = |known: &lancer_lesson::Chapter| {
+        let chapter = Chapter { folder: known.folder, package: known.course.package() };
+        known.course.cards().into_iter().map(move |card| Entry { chapter, card })
     };
-    SHELVES.into_iter().flat_map(of_shelf).collect()
+    CHAPTERS.into_iter().flat_map(of_chapter).collect()
 }
 
 /// The exercise called `given`: by its id, E1.6, that without the letter or the chapter, or its name.

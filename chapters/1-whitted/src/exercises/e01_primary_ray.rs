@@ -7,10 +7,10 @@ use lancer_core::image::{Image, ImageSize};
 use lancer_core::intersector::{Intersector, LinearScan};
 use lancer_core::scene::Camera;
 use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, within};
+use lancer_lesson::scenes::parsed;
 
 use super::reference::primary_ray;
 use super::{Subject, painted};
-use crate::scenes;
 
 pub const EXERCISE: Exercise<Subject> = Exercise {
     card: Card {
@@ -342,7 +342,7 @@ fn odd(subject: &Subject) -> Result<(), Mismatch> {
 
 /// A floor and two balls before a sky, by the subject's rays. The sky is lighter the higher it is.
 fn draw(subject: &Subject) -> Image {
-    let scene = scenes::parsed("floor", FLOOR);
+    let scene = parsed("floor", FLOOR);
     let size = ImageSize::new(288, 192);
     let oracle = LinearScan::new(&scene);
     painted(size, |x, y| {

@@ -13,7 +13,7 @@ use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, 
 use super::reference::ray_triangle;
 use super::{Meeting, Subject, painted};
 use crate::figures::watertight::{EDGES, Relief, VERTICES, aimed};
-use crate::naive::{BySigns, moeller_trumbore};
+use lancer_lesson::naive::{BySigns, moeller_trumbore};
 
 pub const EXERCISE: Exercise<Subject> = Exercise {
     card: Card {

@@ -10,7 +10,7 @@ use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, 
 use super::reference::ray_sphere;
 use super::{Subject, painted};
 use crate::figures::quadratic::far_sphere;
-use crate::naive::textbook_sphere;
+use lancer_lesson::naive::textbook_sphere;
 
 pub const EXERCISE: Exercise<Subject> = Exercise {
     card: Card {

@@ -10,7 +10,7 @@ use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, 
 use super::Subject;
 use super::reference::shadow_ray;
 use crate::figures::acne::Site;
-use crate::naive::epsilon_shadow_ray;
+use lancer_lesson::naive::epsilon_shadow_ray;
 
 pub const EXERCISE: Exercise<Subject> = Exercise {
     card: Card {

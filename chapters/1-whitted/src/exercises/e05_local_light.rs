@@ -6,10 +6,10 @@ use lancer_core::illumination::{Reflectance, attenuation};
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::optics::reflect;
 use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, within};
+use lancer_lesson::scenes::parsed;
 
 use super::reference::local_light;
 use super::{Subject, drawn};
-use crate::scenes;
 
 pub const EXERCISE: Exercise<Subject> = Exercise {
     card: Card {
@@ -350,7 +350,7 @@ fn lamp_behind(subject: &Subject) -> Result<(), Mismatch> {
 /// Balls of growing shininess in the light of a white lamp, from the upper left, and of a blue one behind
 /// them on the right. No shadow is cast: the function is shown alone.
 fn draw(subject: &Subject) -> Image {
-    let scene = scenes::parsed("balls", BALLS);
+    let scene = parsed("balls", BALLS);
     drawn(&scene, ImageSize::new(336, 128), |ray, surface| {
         let Some(surface) = surface else { return Rgb::splat(0.02) };
         let material = scene.material(surface.material);

@@ -4,9 +4,9 @@ use glam::DVec3;
 use lancer_core::Rgb;
 use lancer_core::image::{Image, ImageSize};
 use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, within};
+use lancer_lesson::scenes::parsed;
 
 use super::{Subject, drawn};
-use crate::scenes;
 
 pub const EXERCISE: Exercise<Subject> = Exercise {
     card: Card {
@@ -94,7 +94,7 @@ fn either_side(subject: &Subject) -> Result<(), Mismatch> {
 
 /// A ball in the colours of the directions that it mirrors: red, green and blue are x, y and z.
 fn draw(subject: &Subject) -> Image {
-    let scene = scenes::parsed("ball", BALL);
+    let scene = parsed("ball", BALL);
     let size = ImageSize::new(240, 240);
     drawn(&scene, size, |ray, surface| {
         let Some(surface) = surface else { return Rgb::splat(0.05) };

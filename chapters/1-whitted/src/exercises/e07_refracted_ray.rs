@@ -4,9 +4,9 @@ use glam::DVec3;
 use lancer_core::Rgb;
 use lancer_core::image::{Image, ImageSize};
 use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, same, within};
+use lancer_lesson::scenes::parsed;
 
 use super::{Subject, drawn, reference};
-use crate::scenes;
 
 pub const EXERCISE: Exercise<Subject> = Exercise {
     card: Card {
@@ -242,7 +242,7 @@ fn judge(v: DVec3, n: DVec3, n1: f64, n2: f64, t: Option<DVec3>) -> Result<(), M
 /// What a diver sees who looks up: a checkered ceiling above the water, and beyond the critical angle the dark
 /// water mirrored.
 fn draw(subject: &Subject) -> Image {
-    let scene = scenes::parsed("diver", DIVER);
+    let scene = parsed("diver", DIVER);
     drawn(&scene, ImageSize::new(240, 240), |ray, surface| {
         let Some(surface) = surface else { return Rgb::ZERO };
         let n = surface.optical_normal(ray.direction);

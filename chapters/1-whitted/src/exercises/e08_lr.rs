@@ -6,6 +6,7 @@ use lancer_core::geometry::Ray;
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::scene::Scene;
 use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, within};
+use lancer_lesson::scenes::parsed;
 use lancer_whitted::{RayEnd, RayNode};
 
 use super::{Stage, Subject, from_eye, painted, reference, title_rays};
@@ -217,7 +218,7 @@ fn compare(
     max_depth: u32,
     wanted: Rgb,
 ) -> Result<(), Mismatch> {
-    let scene = scenes::parsed("exercise", text);
+    let scene = parsed("exercise", text);
     let got = (subject.lr)(&Stage::new(&scene, max_depth, reference::SUBJECT), &ray, 0);
     within(1e-10, || format!("{words}; {}, Max_Prof {max_depth}", ray.shown()), &got, &wanted)
 }
@@ -234,7 +235,7 @@ fn background(subject: &Subject) -> Result<(), Mismatch> {
 }
 
 fn beyond(subject: &Subject) -> Result<(), Mismatch> {
-    let scene = scenes::parsed("exercise", BALL_BEHIND);
+    let scene = parsed("exercise", BALL_BEHIND);
     let ray = Ray::new(DVec3::ZERO, DVec3::NEG_Z);
     for (depth, wanted) in [(3, Rgb::ZERO), (2, SKY)] {
         let got = (subject.lr)(&Stage::new(&scene, 2, reference::SUBJECT), &ray, depth);

@@ -6,6 +6,7 @@ use lancer_core::geometry::Ray;
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::scene::Scene;
 use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, within};
+use lancer_lesson::scenes::parsed;
 use lancer_whitted::{RayCounts, RayKind};
 
 use super::{Node, Stage, Subject, from_eye, painted, reference, title_rays};
@@ -170,7 +171,7 @@ fn compare(
     max_depth: u32,
     wanted: &Node,
 ) -> Result<(), Mismatch> {
-    let scene = scenes::parsed("exercise", text);
+    let scene = parsed("exercise", text);
     let stage = Stage::new(&scene, max_depth, reference::SUBJECT);
     let got = (subject.ray_tree)(&stage, &from_eye(ray));
     within(1e-14, || format!("{words}; {}, Max_Prof {max_depth}", ray.shown()), &got, wanted)
@@ -275,7 +276,7 @@ fn total_reflection(subject: &Subject) -> Result<(), Mismatch> {
 
 /// Between panes without end every ray meets one, so Max_Prof 5 leaves 2⁶ − 1 traced calls and 2⁶ leaves.
 fn full_tree(subject: &Subject) -> Result<(), Mismatch> {
-    let scene = scenes::parsed("panes", &panes(6));
+    let scene = parsed("panes", &panes(6));
     let ray = Ray::new(DVec3::new(0.0, 0.0, 0.5), DVec3::new(0.6, 0.0, -0.8));
     let tree = (subject.ray_tree)(&Stage::new(&scene, 5, reference::SUBJECT), &from_eye(ray));
     let (mut nodes, mut leaves, mut open) = (0_u32, 0_u32, vec![&tree]);

@@ -16,20 +16,17 @@ mod stage;
 pub mod prelude;
 pub mod reference;
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use lancer_core::Rgb;
-use lancer_core::geometry::{Interval, Ray, Sphere};
+use lancer_core::geometry::{Ray, Sphere};
 use lancer_core::illumination::Reflectance;
-use lancer_core::image::{Image, ImageSize};
-use lancer_core::intersector::{Intersector, LinearScan};
-use lancer_core::render::{Control, render_pixels};
-use lancer_core::sampling::PixelSampling;
+use lancer_core::image::ImageSize;
 use lancer_core::scene::{Camera, Scene};
 use lancer_core::world::SurfacePoint;
 use lancer_exercise::{Course, Shown};
+use lancer_lesson::picture::{drawn, painted};
 use lancer_whitted::{Call, RayCounts, RayKind};
 
-use crate::figures::picture;
 use crate::scenes;
 
 pub use stage::{Node, Stage};
@@ -87,27 +84,6 @@ pub static COURSE: Course<Subject> = Course {
     ],
     reference: reference::SUBJECT,
 };
-
-/// A picture of what the eye sees through each pixel's centre: `color` of its ray and the surface there.
-fn drawn(
-    scene: &Scene,
-    size: ImageSize,
-    color: impl Fn(&Ray, Option<SurfacePoint>) -> Rgb + Sync,
-) -> Image {
-    let oracle = LinearScan::new(scene);
-    picture(scene, size, PixelSampling::CENTER, |ray, _: &mut u64| {
-        let hit = oracle.closest_hit(ray, Interval::POSITIVE);
-        color(ray, hit.map(|hit| scene.surface_at(ray, &hit)))
-    })
-    .image
-}
-
-/// A picture from what there is in the centre of each pixel, at the film point (x, y).
-pub fn painted(size: ImageSize, radiance: impl Fn(f64, f64) -> Rgb + Sync) -> Image {
-    let radiance = |film: DVec2, _: &mut u64| radiance(film.x, film.y);
-    let painting = render_pixels(size, PixelSampling::CENTER, Control::default(), radiance);
-    painting.expect("nobody cancels a picture").image
-}
 
 /// The call of LR for a primary ray.
 fn from_eye(ray: Ray) -> Call {

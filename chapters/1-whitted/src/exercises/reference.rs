@@ -7,8 +7,8 @@ use lancer_core::illumination::{Reflectance, attenuation, local};
 use lancer_core::image::ImageSize;
 use lancer_core::optics::{reflect, refract};
 use lancer_core::sampling::{Pattern, PixelSampling};
-use lancer_core::scene::Camera;
-use lancer_core::world::{PointSource, SurfacePoint, World};
+use lancer_core::scene::{Camera, PointSource};
+use lancer_core::world::{SurfacePoint, World};
 use lancer_whitted::{AtLimit, Call, RayCounts, RayEnd, RayTree, Settings, Whitted};
 
 use super::{Film, Meeting, Node, Stage, Subject};
@@ -59,7 +59,7 @@ pub fn local_light(
     to_light: DVec3,
     to_eye: DVec3,
 ) -> Rgb {
-    local(intensity, attenuation(visible, distance), reflectance, n, to_light, to_eye)
+    intensity * attenuation(visible, distance) * local(reflectance, n, to_light, to_eye)
 }
 
 /// [`Subject::reflected_ray`].
@@ -145,7 +145,8 @@ pub fn count_rays(node: &Node) -> RayCounts {
 /// [`Subject::pixel_mean`].
 pub fn pixel_mean(radiance: &Film, x: u32, y: u32, n: u32) -> Rgb {
     let sampling = PixelSampling { pattern: Pattern::Regular, samples: n * n, seed: 0 };
-    sampling.points(x, y).map(|film| radiance(film.x, film.y)).sum::<Rgb>() / f64::from(n * n)
+    let radiances = sampling.of_pixel(x, y).map(|sample| radiance(sample.film.x, sample.film.y));
+    radiances.sum::<Rgb>() / f64::from(n * n)
 }
 
 /// [`Subject::rms_error`].

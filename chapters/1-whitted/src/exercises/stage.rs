@@ -4,8 +4,8 @@ use glam::DVec3;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::illumination::Reflectance;
 use lancer_core::intersector::{Hit, Intersector};
-use lancer_core::scene::Scene;
-use lancer_core::world::{PointSource, SurfacePoint};
+use lancer_core::scene::{PointSource, Scene};
+use lancer_core::world::SurfacePoint;
 use lancer_exercise::Shown;
 use lancer_whitted::{Call, RayKind};
 

@@ -14,7 +14,7 @@ use lancer_figure::{
     category_color, method_color, number,
 };
 
-use crate::naive::{epsilon_shadow_ray, moeller_trumbore};
+use lancer_lesson::naive::{epsilon_shadow_ray, moeller_trumbore};
 
 /// Where a shadow ray to a light starts.
 type Start = fn(&SurfacePoint, DVec3) -> Ray;

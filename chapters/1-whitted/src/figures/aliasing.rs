@@ -6,14 +6,16 @@ use glam::DVec2;
 use lancer_core::Rgb;
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::render::{Control, render_pixels};
-use lancer_core::sampling::{Pattern, PixelSampling};
+use lancer_core::sampling::{Pattern, PixelSampling, Sample};
 use lancer_core::scene::Scene;
 use lancer_figure::{
     Contender, Effort, Finished, Inset, Montage, Plate, Study, Tile, category_color,
 };
+use lancer_lesson::judge::errors_of;
+use lancer_lesson::picture::shown;
 use lancer_whitted::{RayCounts, Settings};
 
-use super::{errors_of, shown, trace_picture};
+use super::trace_picture;
 use crate::scenes;
 
 const PATTERNS: [(Pattern, &str); 3] =
@@ -39,9 +41,9 @@ impl ZonePlate {
     }
 
     fn sampled(&self, sampling: PixelSampling) -> (Image, u64) {
-        let radiance = |film: DVec2, samples: &mut u64| {
+        let radiance = |sample: &Sample, samples: &mut u64| {
             *samples += 1;
-            Rgb::splat(self.value(film))
+            Rgb::splat(self.value(sample.film))
         };
         let rendering = render_pixels(self.size, sampling, Control::default(), radiance);
         let rendering = rendering.expect("nobody cancels a figure");

@@ -3,16 +3,18 @@
 use std::ops::AddAssign;
 
 use lancer_core::image::{Image, ImageSize};
-use lancer_core::metric::{absolute_error_map, rmse};
+use lancer_core::metric::rmse;
 use lancer_core::sampling::PixelSampling;
 use lancer_core::scene::Scene;
 use lancer_figure::{
     Axis, Chart, Color, Contender, Effort, Finished, HeatScale, Montage, Plate, Row, Series, Study,
     Tile, category_color, method_color, number,
 };
+use lancer_lesson::judge::{error_tile, errors_of, mean_error};
+use lancer_lesson::picture::shown;
 use lancer_whitted::{AtLimit, Call, RayCounts, Recorder, Settings};
 
-use super::{error_tile, errors_of, shown, trace_picture};
+use super::trace_picture;
 use crate::scenes;
 
 /// Counts the rays, and the weight of those that were cut: what the picture may still lack.
@@ -165,9 +167,4 @@ pub fn make(effort: Effort) -> Finished {
 fn render(scene: &Scene, settings: Settings, size: ImageSize) -> (Image, WeightLeft) {
     let rendering = trace_picture::<WeightLeft>(scene, settings, size, PixelSampling::CENTER);
     (rendering.image, rendering.counts)
-}
-
-fn mean_error(reference: &Image, image: &Image) -> f64 {
-    let errors = absolute_error_map(reference, image).expect("pictures of one size");
-    errors.iter().sum::<f64>() / errors.len() as f64
 }

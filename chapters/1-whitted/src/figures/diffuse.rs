@@ -14,10 +14,12 @@ use lancer_figure::{
     Axis, Chart, Contender, Effort, Finished, HeatScale, Montage, Plate, Row, Series, Study, Tile,
     category_color, method_color, number,
 };
+use lancer_lesson::judge::{error_tile, errors_of, pixelwise};
+use lancer_lesson::picture::{picture, shown};
+use lancer_lesson::scenes::parsed;
 use lancer_whitted::{Lighting, RayCounts, Settings};
 
-use super::{error_tile, errors_of, picture, pixelwise, shown, whitted_picture};
-use crate::scenes;
+use super::whitted_picture;
 
 /// A lamp in the middle of a hollow sphere of radius 1: the direct light is ρ_d everywhere.
 const SPHERE: &str = "
@@ -66,7 +68,7 @@ fn path_radiance(
         let surface = scene.surface_at(&ray, &hit);
         let n = surface.shading_normal_towards(-ray.direction);
         radiance += weight * lighting.surface(&surface, n, -ray.direction, rays);
-        let rho_d = scene.material(surface.material).rho_d.at(surface.position, n);
+        let rho_d = scene.reflectance(&surface).diffuse;
         let survival = rho_d.max_element();
         if random.number() >= survival {
             return radiance;
@@ -118,7 +120,7 @@ const SPHERE_SIDE: u32 = 16;
 
 /// The mean radiance of the sphere's inside, over the direct light.
 fn in_sphere(method: Method, rho: f64) -> f64 {
-    let mut scene = scenes::parsed("sphere", SPHERE);
+    let mut scene = parsed("sphere", SPHERE);
     scene.materials[0].rho_d = Pigment::Solid(Rgb::splat(rho));
     let (image, _) = method.picture(&scene, ImageSize::new(SPHERE_SIDE, SPHERE_SIDE));
     let radiances = image.pixels().iter().map(|pixel| f64::from(pixel[0]));
@@ -131,7 +133,7 @@ const PATHS: &str = "random paths";
 const PATHS_PER_PIXEL: [u32; 5] = [1, 4, 16, 64, 256];
 
 pub fn make(effort: Effort) -> Finished {
-    let room = scenes::parsed("plaster", ROOM);
+    let room = parsed("plaster", ROOM);
     let size = effort.pick(ImageSize::new(40, 40), ImageSize::new(128, 128));
     let half = |seed| {
         let samples = effort.pick(128, 512);

@@ -13,9 +13,11 @@ use lancer_figure::{
     Axis, Chart, Drawing, Effort, Finished, INK, LABEL, MUTED, Montage, Pen, Picture, Plate, Row,
     Series, Spread, Stroke, Table, Text, Tile, category_color, decimals, method_color, number,
 };
+use lancer_lesson::judge::fitted_exponent;
+use lancer_lesson::picture::shown;
 use lancer_whitted::Settings;
 
-use super::{fitted_exponent, shown, whitted_picture};
+use super::whitted_picture;
 
 const EXPONENTS: [f64; 7] = [1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0];
 /// ρ_s of the spheres shown; the normalised ones are equal to the others at this exponent.
@@ -88,7 +90,7 @@ fn measured_width(shininess: f64, side: u32) -> Spread {
 /// (R·V)ⁿ by the code's own eq:local.
 fn lobe(shininess: f64, n: DVec3, to_light: DVec3, to_eye: DVec3) -> f64 {
     let reflectance = Reflectance { diffuse: Rgb::ZERO, specular: Rgb::ONE, shininess };
-    local(Rgb::ONE, 1.0, &reflectance, n, to_light, to_eye).x
+    local(&reflectance, n, to_light, to_eye).x
 }
 
 /// The lobe's integral over the hemisphere around R, by a spiral of points of equal solid angle.

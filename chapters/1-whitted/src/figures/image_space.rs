@@ -15,9 +15,11 @@ use lancer_figure::{
     Axis, BarChart, Chart, Effort, Finished, Montage, Plate, Row, Series, Table, Tile, Value,
     category_color, method_color, number,
 };
+use lancer_lesson::judge::fitted_exponent;
+use lancer_lesson::picture::{picture, shown};
 use lancer_whitted::{Appel, RayCounts, Settings};
 
-use super::{fitted_exponent, picture, shown, whitted_picture};
+use super::whitted_picture;
 use crate::scenes;
 
 /// A way to move the camera by so many pixels.

@@ -15,10 +15,12 @@ use lancer_figure::{
     Contender, Effort, Finished, HeatScale, Montage, Plate, Study, Tile, category_color,
     method_color, number,
 };
+use lancer_lesson::judge::{error_tile, errors_of, pixelwise};
+use lancer_lesson::picture::{picture, shown};
+use lancer_lesson::scenes::parsed;
 use lancer_whitted::{RayCounts, Settings};
 
-use super::{error_tile, errors_of, picture, pixelwise, shown, trace_picture};
-use crate::scenes;
+use super::trace_picture;
 
 /// The mirror's lower corner, width and height, in the plane z = −1; it faces +z.
 const CORNER: DVec3 = DVec3::new(-1.0, 0.05, -1.0);
@@ -82,8 +84,7 @@ impl<'a> Stage<'a> {
     }
 
     fn diffuse(&self, surface: &SurfacePoint) -> Rgb {
-        let material = self.world.scene.material(surface.material);
-        material.rho_d.at(surface.position, surface.geometric_normal)
+        self.world.scene.reflectance(surface).diffuse
     }
 
     /// What the eye sees along a ray of the light that comes by way of the mirror: eq:local for the
@@ -102,7 +103,8 @@ impl<'a> Stage<'a> {
         let g = attenuation(true, to_image.length());
         let diffuse = self.diffuse(&surface);
         let matte = Reflectance { diffuse, specular: Rgb::ZERO, shininess: 1.0 };
-        local(self.k_s() * self.intensity, g, &matte, n, to_image.normalize(), -ray.direction)
+        let reflected = local(&matte, n, to_image.normalize(), -ray.direction);
+        self.k_s() * self.intensity * g * reflected
     }
 }
 
@@ -199,7 +201,7 @@ struct Outcome {
 }
 
 pub fn make(effort: Effort) -> Finished {
-    let scene = scenes::parsed("indirect", SCENE);
+    let scene = parsed("indirect", SCENE);
     let index = ObvhsBvh2::build(&scene);
     let stage = Stage::new(World { scene: &scene, index: &index });
     let size = effort.pick(ImageSize::new(72, 54), ImageSize::new(400, 300));

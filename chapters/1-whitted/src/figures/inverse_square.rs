@@ -14,10 +14,10 @@ use lancer_figure::{
     Axis, Chart, Color, Contender, Effort, Finished, Montage, Plate, Row, Series, Study, Table,
     Tile, category_color, method_color, number,
 };
+use lancer_lesson::judge::fitted_exponent;
+use lancer_lesson::picture::{picture, shown};
+use lancer_lesson::scenes::parsed;
 use lancer_whitted::{Appel, RayCounts, Recorder};
-
-use super::{fitted_exponent, picture, shown};
-use crate::scenes;
 
 /// Balls ever farther from a lamp, on a floor.
 const ROW: &str = "
@@ -230,7 +230,7 @@ pub fn make(effort: Effort) -> Finished {
 
 /// The same scene by each law.
 fn row_of_balls(effort: Effort) -> Montage {
-    let scene = scenes::parsed("row", ROW);
+    let scene = parsed("row", ROW);
     let index = ObvhsBvh2::build(&scene);
     let appel = Appel::new(World { scene: &scene, index: &index });
     let size = effort.pick(ImageSize::new(96, 24), ImageSize::new(900, 180));

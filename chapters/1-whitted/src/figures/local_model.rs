@@ -7,15 +7,15 @@ use lancer_core::geometry::{Interval, Ray};
 use lancer_core::illumination::{Reflectance, ambient, attenuation, local};
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::intersector::Intersector;
-use lancer_core::optics::{reflect, refract};
-use lancer_core::scene::Scene;
-use lancer_core::world::{PointSource, World};
+use lancer_core::optics::Branches;
+use lancer_core::scene::{PointSource, Scene};
+use lancer_core::world::World;
 use lancer_figure::{
     BarChart, Effort, Finished, Montage, Plate, Row, Table, Tile, category_color, number,
 };
+use lancer_lesson::picture::shown;
 use lancer_whitted::{AtLimit, Settings, Whitted};
 
-use super::shown;
 use crate::scenes;
 
 const TERMS: [&str; 6] = ["ambient", "diffuse", "specular", "shadows", "reflection", "refraction"];
@@ -110,34 +110,25 @@ fn terms_of(scene: &Scene, size: ImageSize) -> (Vec<[Rgb; 6]>, Vec<Rgb>) {
             let material = scene.material(surface.material);
             let incident = ray.direction;
             let n = surface.shading_normal_towards(-incident);
-            let rho_d = material.rho_d.at(surface.position, surface.geometric_normal);
-            let only = |diffuse: Rgb, specular: Rgb| Reflectance {
-                diffuse,
-                specular,
-                shininess: material.shininess,
-            };
-            terms[0] = material.emission + ambient(rho_d, scene.ambient);
+            let both = scene.reflectance(&surface);
+            let matte = Reflectance { specular: Rgb::ZERO, ..both };
+            let shiny = Reflectance { diffuse: Rgb::ZERO, ..both };
+            terms[0] = material.emission + ambient(both.diffuse, scene.ambient);
             for source in &sources {
                 let shadow_ray = surface.spawn_to(source.position);
-                let lit = |reflectance| light(source, &reflectance, &shadow_ray, n, -incident);
-                let diffuse = lit(only(rho_d, Rgb::ZERO));
-                let specular = lit(only(Rgb::ZERO, material.rho_s));
+                let lit = |reflectance| light(source, reflectance, &shadow_ray, n, -incident);
+                let (diffuse, specular) = (lit(&matte), lit(&shiny));
                 terms[1] += diffuse;
                 terms[2] += specular;
                 if index.occluded(&shadow_ray, Interval::up_to(1.0)) {
                     terms[3] -= diffuse + specular;
                 }
             }
-            let beyond = |direction| rest.trace(&surface.spawn(direction), &mut ());
-            if material.k_s != Rgb::ZERO {
-                terms[4] = material.k_s * beyond(reflect(incident, n));
-            }
-            // From outside, nothing is totally reflected.
-            if let Some(refracted) = refract(incident, n, 1.0, material.refractive_index)
-                && material.k_t != Rgb::ZERO
-            {
-                terms[5] = material.k_t * beyond(refracted);
-            }
+            let beyond =
+                |(share, direction)| share * rest.trace(&surface.spawn(direction), &mut ());
+            let branches = Branches::new(&surface, material, incident);
+            terms[4] = branches.mirror.map_or(Rgb::ZERO, beyond);
+            terms[5] = branches.refracted.map_or(Rgb::ZERO, beyond);
             (terms, radiance)
         })
         .unzip()
@@ -154,5 +145,5 @@ fn light(
     let distance = to_source.direction.length();
     let to_light = to_source.direction / distance;
     let g = attenuation(true, distance);
-    local(source.intensity_towards(to_light), g, reflectance, n, to_light, to_eye)
+    source.intensity_towards(to_light) * g * local(reflectance, n, to_light, to_eye)
 }

@@ -10,9 +10,11 @@ use lancer_figure::{
     Axis, Chart, Color, Contender, Effort, Finished, HeatScale, Montage, Plate, Row, Series, Study,
     Table, Tile, Value, category_color, decimals, method_color, number,
 };
+use lancer_lesson::judge::{error_tile, errors_of, mean};
+use lancer_lesson::picture::shown;
 use lancer_whitted::{AtLimit, Settings};
 
-use super::{error_tile, errors_of, shown, whitted_picture};
+use super::whitted_picture;
 use crate::scenes;
 
 /// Max_Prof of the rules that go by weight: so deep that no ray of these scenes comes there.
@@ -95,7 +97,7 @@ struct Trial {
 impl Trial {
     fn new(name: &'static str, scene: Scene, size: ImageSize, level: f64, alike: [f64; 3]) -> Self {
         let render = |settings| whitted_picture(&scene, settings, size);
-        let Rendering { image: reference, counts } = render(weight(NEGLIGIBLE));
+        let Rendering { image: reference, counts, .. } = render(weight(NEGLIGIBLE));
         let rougher = render(weight(10.0 * NEGLIGIBLE)).image;
         let contenders = RULES.iter().flat_map(|rule| {
             rule.limits.iter().map(move |&limit| Contender {
@@ -143,11 +145,6 @@ impl Trial {
     fn bias(&self, image: &Image) -> f64 {
         mean(image) / mean(&self.reference) - 1.0
     }
-}
-
-fn mean(image: &Image) -> f64 {
-    let channels = image.pixels().as_flattened();
-    channels.iter().copied().map(f64::from).sum::<f64>() / channels.len() as f64
 }
 
 /// The mean of many pictures by roulette.

@@ -6,7 +6,7 @@ use lancer_figure::{
     Axis, Chart, Effort, Finished, Plate, Row, Series, Table, category_color, method_color, number,
 };
 
-use crate::naive::textbook_sphere;
+use lancer_lesson::naive::textbook_sphere;
 
 /// The ray leaves the origin along D = (2, 3, 6), of length 7. A sphere of radius 35 stands at
 /// k D + 3 (6, 2, −3): its centre is 21 beside the ray, the half chord is √(35² − 21²) = 28 = 4 |D|, and

@@ -15,12 +15,14 @@ use lancer_figure::{
     Drawing, Effort, FAINT, Finished, LABEL, Montage, Pen, Plate, Row, Style, Table, Text, Tile,
     category_color, number,
 };
+use lancer_lesson::picture::shown;
 use lancer_whitted::{AtLimit, RayEnd, RayNode, RayTree, Settings, Whitted, recursion};
 
-use super::{shown, whitted_picture};
+use super::whitted_picture;
 use crate::scenes;
 use crate::step::terms::Spawned;
-use crate::step::view::{Side, View, calls, kind};
+use crate::step::view::{calls, kind};
+use lancer_lesson::view::{Side, View};
 
 const SIZE: ImageSize = ImageSize::new(256, 256);
 /// A pixel whose ray passes through glass to plastic, the mirror and the floor.
@@ -28,7 +30,7 @@ const PIXEL: (u32, u32) = (123, 78);
 const SETTINGS: Settings = Settings { max_depth: 4, min_weight: 0.01, at_limit: AtLimit::Black };
 
 pub fn make(_: Effort) -> Finished {
-    let loaded = scenes::open("whitted", None).expect("a scene of the chapter");
+    let loaded = scenes::opened("whitted", None);
     let scene = &loaded.scene;
     let tree_of_boxes = ObvhsBvh2::build(scene);
     let index = Counting {

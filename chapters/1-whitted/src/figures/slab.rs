@@ -11,8 +11,8 @@ use lancer_figure::{
     method_color, number,
 };
 
-use crate::hard_boxes::{Class, HardBox};
-use crate::naive::{min_max_box, padded_box, sign_picked_box, sse_box, swapped_box};
+use lancer_lesson::hard_boxes::{Class, HardBox};
+use lancer_lesson::naive::{min_max_box, padded_box, sign_picked_box, sse_box, swapped_box};
 
 /// Where a ray enters a box, if it does.
 type Form = fn(&Bounds3, &Ray) -> Option<f64>;

@@ -12,9 +12,10 @@ use lancer_figure::{
     Axis, Chart, Contender, Effort, Finished, Montage, Plate, Row, Series, Study, Tile,
     category_color, method_color,
 };
+use lancer_lesson::picture::shown;
 use lancer_whitted::{RayCounts, Settings};
 
-use super::{shown, trace_picture};
+use super::trace_picture;
 
 /// A pixel at the sphere's distance is a unit wide, and far away: the sphere's outline on the picture is
 /// an ellipse, wider than a disc by less than 1 / cos³ of the angle to the picture's corner.

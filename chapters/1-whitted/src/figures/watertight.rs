@@ -12,7 +12,7 @@ use lancer_figure::{
     category_color, method_color, number,
 };
 
-use crate::naive::{BySigns, moeller_trumbore};
+use lancer_lesson::naive::{BySigns, moeller_trumbore};
 
 /// The three tests.
 pub(super) const TESTS: [&str; 3] = ["Möller-Trumbore", "fused edge functions", "watertight"];

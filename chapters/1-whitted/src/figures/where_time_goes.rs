@@ -10,9 +10,9 @@ use lancer_figure::{
     Axis, BarChart, Chart, Contender, Effort, Finished, Plate, Row, Series, Study, Table,
     category_color, method_color,
 };
+use lancer_lesson::judge::fitted_exponent;
 use lancer_whitted::{Call, Recorder, Settings, Whitted};
 
-use super::fitted_exponent;
 use crate::scenes;
 
 /// Brute force is not asked for more primitives.
@@ -130,10 +130,7 @@ pub fn make(effort: Effort) -> Finished {
     let runs = effort.pick(2, 25);
     let levels = effort.pick([3, 5], [5, 8]);
     let generated = |name: &'static str, levels: u32| {
-        (1..=levels).map(move |level| {
-            let opened = scenes::open(name, Some(&level.to_string()));
-            (name, opened.expect("a level that the scene has").scene)
-        })
+        (1..=levels).map(move |level| (name, scenes::opened(name, Some(&level.to_string())).scene))
     };
     let scenes: Vec<(&str, Scene)> = [("whitted", scenes::whitted())]
         .into_iter()

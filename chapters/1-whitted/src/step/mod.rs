@@ -7,54 +7,49 @@ pub mod terms;
 pub mod view;
 
 use glam::{DVec2, DVec3};
+use lancer_accel::ObvhsBvh2;
 use lancer_core::Rgb;
 use lancer_core::image::{Image, ImageSize};
-use lancer_core::intersector::{Hit, Intersector};
-use lancer_core::sampling::PixelSampling;
-use lancer_core::scene::Scene;
-use lancer_core::scene::load::Loaded;
-use lancer_core::world::{PointSource, SurfacePoint, World};
+use lancer_core::intersector::Hit;
+use lancer_core::method::Setting;
+use lancer_core::optics::indices;
+use lancer_core::scene::{PointSource, Scene};
+use lancer_core::world::{SurfacePoint, World};
 use lancer_exercise::Shown;
-use lancer_figure::{Backdrop, Color, INK, Pen, Picture, Step, Stroke, Walk, number};
-use lancer_whitted::{RayCounts, RayEnd, RayKind, RayNode, RayTree, Settings, Whitted, recursion};
+use lancer_figure::{Backdrop, Color, INK, Pen, Step, Stroke, Walk, number};
+use lancer_lesson::chapter::{WalkOrder, Walkthrough};
+use lancer_lesson::picture::marked_picture;
+use lancer_lesson::view::{View, printable};
+use lancer_whitted::{RayEnd, RayKind, RayNode, RayTree, Settings, Whitted, recursion};
 
-use crate::figures::{picture, shown};
 use terms::{LampTerm, LocalTerms, Spawned};
-use view::{View, kind};
+use view::kind;
 
-/// The longest side of the small picture beside a walk, in pixels.
-const SMALL: u32 = 256;
-/// The longest name of a material that is written in full.
-const LONGEST_NAME: usize = 40;
-
-/// The pixel that is walked through, and how it is computed.
-pub struct Request<'a> {
-    /// What the scene is called.
-    pub name: &'a str,
-    /// The scene.
-    pub loaded: &'a Loaded,
-    /// An index of it.
-    pub index: &'a dyn Intersector,
-    /// The size of the picture.
-    pub size: ImageSize,
-    /// Column and row of the pixel, both in the picture; the ray passes through its centre.
-    pub pixel: [u32; 2],
-    /// Where the recursion ends.
-    pub settings: Settings,
-}
+/// LR, step by step.
+pub const WALK: Walkthrough = Walkthrough {
+    name: "whitted",
+    about: "is the slides' algorithm LR: each call with its ray, what it meets, the terms of the local model lamp \
+            by lamp, the rays that it spawns, and the sum that comes back up",
+    uses: &[Setting::MaxDepth],
+    walk: |order| Ok(walk(order)),
+};
 
 /// Walks through LR for one pixel.
-pub fn walk(request: &Request<'_>) -> Walk {
-    let Request { loaded, index, size, pixel: [x, y], settings, .. } = *request;
+pub fn walk(order: &WalkOrder<'_>) -> Walk {
+    let WalkOrder { loaded, size, pixel: [x, y], .. } = *order;
     let scene = &loaded.scene;
-    let whitted = Whitted::new(World { scene, index }, settings);
+    let index = ObvhsBvh2::build(scene);
+    let defaults = Settings::default();
+    let max_depth = order.max_depth.unwrap_or(defaults.max_depth);
+    let settings = Settings { max_depth, ..defaults };
+    let whitted = Whitted::new(World { scene, index: &index }, settings);
     let film = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
     let ray = scene.camera.primary_rays(size).through(film.x, film.y);
     let mut tree = RayTree::default();
     whitted.trace(&ray, &mut tree);
 
     let names: Vec<String> = loaded.material_names.iter().map(|name| printable(name)).collect();
-    let view = View::of_rays(scene, &tree);
+    let view = view::of_rays(scene, &tree);
     let sources = scene.point_sources();
     let mut walker = Walker {
         scene,
@@ -75,7 +70,7 @@ pub fn walk(request: &Request<'_>) -> Walk {
         [(k + 1).to_string(), format!("{} {}", kind(node.call.kind).0, number(node.call.weight))]
     };
     Walk {
-        title: format!("LR for pixel ({x}, {y}) of {}", printable(request.name)),
+        title: format!("LR for pixel ({x}, {y}) of {}", printable(order.name)),
         subtitle: format!(
             "{size} pixels, depth at most {}, weight at least {}; calls {}, traced {}, shadow rays {shadows}",
             settings.max_depth,
@@ -94,40 +89,10 @@ pub fn walk(request: &Request<'_>) -> Walk {
             .into_iter()
             .chain([true, false].map(view::shadow).map(|(name, color)| (name, color, true)))
             .collect(),
-        picture: marked_picture(scene, &whitted, size, request.pixel),
+        picture: marked_picture(scene, size, order.pixel, |ray| whitted.trace(ray, &mut ())),
         calls: view::calls(&tree, 0, &label),
         steps,
     }
-}
-
-/// A small picture of a scene with a pixel of it marked, and what it shows: `size` is that of the picture
-/// that the pixel belongs to.
-pub fn marked_picture(
-    scene: &Scene,
-    whitted: &Whitted<'_>,
-    size: ImageSize,
-    [x, y]: [u32; 2],
-) -> (Picture, String) {
-    let small = |side: u32| (side * SMALL).div_ceil(size.width.max(size.height)).min(side);
-    let small_size = ImageSize::new(small(size.width), small(size.height));
-    let rendering =
-        picture(scene, small_size, PixelSampling::CENTER, |ray, counts: &mut RayCounts| {
-            whitted.trace(ray, counts)
-        });
-    let scaled =
-        |at: u32, side: u32| (u64::from(at) * u64::from(small(side)) / u64::from(side)) as u32;
-    let marked = shown(&rendering.image).marked(scaled(x, size.width), scaled(y, size.height));
-    (marked, format!("pixel ({x}, {y}) of {size}"))
-}
-
-/// A name from a file, as a short line that cannot control a terminal.
-pub fn printable(name: &str) -> String {
-    let clean = |c: char| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c };
-    let mut short: String = name.chars().take(LONGEST_NAME).map(clean).collect();
-    if name.chars().nth(LONGEST_NAME).is_some() {
-        short.push('…');
-    }
-    short
 }
 
 /// The colour of a radiance on a display.
@@ -296,7 +261,7 @@ impl Walker<'_> {
                 lamp.specular.shown()
             ))
             .line(format!("I vis / d² (ρ_d (N·L) + ρ_s (R·V)^n) = {}", lamp.value().shown()))
-            .draws(move |pen| view.shadow(pen, from, position, visible))
+            .draws(move |pen| view.dashed(pen, from, position, view::shadow(visible).1))
     }
 
     fn local(&self, k: usize, terms: &LocalTerms, local: Rgb) -> Step {
@@ -352,9 +317,7 @@ impl Walker<'_> {
         let (parent, call) = (&self.tree.nodes[k].call, &self.tree.nodes[child].call);
         let incident = parent.ray.direction;
         let n = surface.optical_normal(incident);
-        let index = self.scene.material(surface.material).refractive_index;
-        let outside = surface.geometric_normal.dot(incident) < 0.0;
-        let [n1, n2] = if outside { [1.0, index] } else { [index, 1.0] };
+        let [n1, n2] = indices(surface, self.scene.material(surface.material), incident);
         let theta = degrees(incident, n);
         let (share, lines) = if call.kind == RayKind::Refracted {
             let law = format!(

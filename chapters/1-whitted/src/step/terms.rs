@@ -3,9 +3,9 @@
 use glam::DVec3;
 use lancer_core::Rgb;
 use lancer_core::illumination::{Reflectance, ambient, attenuation, local};
-use lancer_core::optics::reflect;
-use lancer_core::scene::Scene;
-use lancer_core::world::{PointSource, SurfacePoint};
+use lancer_core::optics::{Branches, reflect};
+use lancer_core::scene::{PointSource, Scene};
+use lancer_core::world::SurfacePoint;
 use lancer_whitted::{RayKind, RayNode, RayTree, ShadowRay};
 
 /// The light that leaves a surface without the help of other surfaces: `algo:appel`, term by term.
@@ -52,11 +52,7 @@ impl LocalTerms {
     ) -> Self {
         let to_eye = -node.call.ray.direction;
         let n = surface.shading_normal_towards(to_eye);
-        let material = scene.material(surface.material);
-        let diffuse = material.rho_d.at(surface.position, surface.geometric_normal);
-        let reflectance =
-            Reflectance { diffuse, specular: material.rho_s, shininess: material.shininess };
-        let faces_eye = surface.geometric_normal.dot(to_eye) > 0.0;
+        let reflectance = scene.reflectance(surface);
         // Lamps are asked in their order, so that the shadow rays come in it too.
         let mut shadows = node.shadows.iter();
         let lamp = |source: &PointSource| {
@@ -67,9 +63,9 @@ impl LocalTerms {
             term
         };
         Self {
-            emission: if faces_eye { material.emission } else { Rgb::ZERO },
+            emission: scene.emitted(surface, to_eye),
             reflectance,
-            ambient: ambient(diffuse, scene.ambient),
+            ambient: ambient(reflectance.diffuse, scene.ambient),
             lamps: sources.iter().map(lamp).collect(),
         }
     }
@@ -93,9 +89,7 @@ impl LampTerm {
         let distance = shadow_ray.direction.length();
         let to_light = shadow_ray.direction * distance.recip();
         let intensity = source.intensity_towards(to_light);
-        let part = |reflectance: &Reflectance, intensity: Rgb, g: f64| {
-            local(intensity, g, reflectance, n, to_light, to_eye)
-        };
+        let part = |reflectance: &Reflectance| local(reflectance, n, to_light, to_eye);
         let (matte, shiny) = (
             Reflectance { specular: Rgb::ZERO, ..*reflectance },
             Reflectance { diffuse: Rgb::ZERO, ..*reflectance },
@@ -106,9 +100,9 @@ impl LampTerm {
             distance,
             cos_light: n.dot(to_light),
             cos_mirror: reflect(-to_light, n).dot(to_eye),
-            diffuse: part(&matte, Rgb::ONE, 1.0),
-            specular: part(&shiny, Rgb::ONE, 1.0),
-            unshadowed: part(reflectance, intensity, attenuation(true, distance)),
+            diffuse: part(&matte),
+            specular: part(&shiny),
+            unshadowed: intensity * attenuation(true, distance) * part(reflectance),
             shadow: None,
         }
     }
@@ -146,13 +140,10 @@ impl Spawned {
                 node.parent == Some(k) && node.call.kind == kind
             })
         };
-        let refracted = child(RayKind::Refracted);
-        let total_reflection = refracted.is_none() && material.k_t != Rgb::ZERO;
-        let (k_s, k_t) = if total_reflection {
-            (material.k_s + material.k_t, Rgb::ZERO)
-        } else {
-            (material.k_s, material.k_t)
-        };
-        Self { k_s, mirror: child(RayKind::Mirror), k_t, refracted, total_reflection }
+        let branches = Branches::new(surface, material, tree.nodes[k].call.ray.direction);
+        let [k_s, k_t] = branches.shares();
+        let total_reflection = branches.refracted.is_none() && material.k_t != Rgb::ZERO;
+        let (mirror, refracted) = (child(RayKind::Mirror), child(RayKind::Refracted));
+        Self { k_s, mirror, k_t, refracted, total_reflection }
     }
 }

@@ -1,13 +1,13 @@
 //! E4.1: a ray and a box.
 
-use chapter_1::exercises::painted;
-use chapter_1::hard_boxes::{Class, HardBox};
 use glam::DVec3;
 use lancer_core::Rgb;
 use lancer_core::geometry::{Bounds3, Interval, Ray};
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::sampling::Uniform;
 use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, within};
+use lancer_lesson::hard_boxes::{Class, HardBox};
+use lancer_lesson::picture::painted;
 
 use super::Subject;
 use super::reference::slab_test;

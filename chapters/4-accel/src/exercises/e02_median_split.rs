@@ -1,12 +1,12 @@
 //! E4.2: the median split.
 
-use chapter_1::exercises::painted;
 use glam::DVec3;
 use lancer_core::Rgb;
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::sampling::Uniform;
 use lancer_core::scene::PrimitiveId;
 use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution};
+use lancer_lesson::picture::painted;
 
 use super::reference::median_split;
 use super::{Item, Subject, color_of};

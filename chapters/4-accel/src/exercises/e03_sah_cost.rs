@@ -1,11 +1,11 @@
 //! E4.3: the surface area heuristic.
 
-use chapter_1::exercises::painted;
 use glam::DVec3;
 use lancer_core::Rgb;
 use lancer_core::geometry::Bounds3;
 use lancer_core::image::{Image, ImageSize};
 use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, same, within};
+use lancer_lesson::picture::painted;
 
 use super::Subject;
 use super::reference::{best_split, sah_cost};

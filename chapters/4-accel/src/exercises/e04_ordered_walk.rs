@@ -1,6 +1,5 @@
 //! E4.4: near child first.
 
-use chapter_1::exercises::painted;
 use glam::DVec3;
 use lancer_core::Rgb;
 use lancer_core::geometry::{Interval, Ray, Sphere};
@@ -9,6 +8,7 @@ use lancer_core::intersector::{Hit, Intersector, LinearScan, TestCounts};
 use lancer_core::sampling::Uniform;
 use lancer_core::scene::{MaterialId, Mesh, Scene, SphereObject};
 use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, same};
+use lancer_lesson::picture::painted;
 
 use super::reference::visit;
 use super::walk::Tree;

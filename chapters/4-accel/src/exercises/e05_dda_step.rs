@@ -1,12 +1,12 @@
 //! E4.5: a step through the grid.
 
-use chapter_1::exercises::painted;
 use glam::{DVec3, IVec3};
 use lancer_accel::Lattice;
 use lancer_core::Rgb;
 use lancer_core::geometry::Ray;
 use lancer_core::image::{Image, ImageSize};
 use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, within};
+use lancer_lesson::picture::painted;
 
 use super::Subject;
 use super::reference::next_cell;

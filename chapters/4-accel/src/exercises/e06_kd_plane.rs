@@ -1,11 +1,11 @@
 //! E4.6: a ray and the plane of a kd-tree.
 
-use chapter_1::exercises::painted;
 use lancer_accel::Sides;
 use lancer_core::Rgb;
 use lancer_core::geometry::Interval;
 use lancer_core::image::{Image, ImageSize};
 use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution};
+use lancer_lesson::picture::painted;
 
 use super::Subject;
 use super::reference::plane_sides;

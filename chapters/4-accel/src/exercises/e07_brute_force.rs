@@ -1,6 +1,5 @@
 //! E4.7: the same answer as brute force.
 
-use chapter_1::exercises::painted;
 use glam::{DAffine3, DVec3};
 use lancer_accel::{Cell, Grid};
 use lancer_core::Rgb;
@@ -8,6 +7,7 @@ use lancer_core::geometry::{Bounds3, Interval, Shear, intersect_triangle};
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::scene::{PrimitiveId, Scene};
 use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Solution};
+use lancer_lesson::picture::painted;
 
 use super::reference::search_cells;
 use super::{Met, Subject, Test, color_of};

@@ -1,12 +1,12 @@
 //! E4.8: eight boxes at once.
 
-use chapter_1::exercises::painted;
 use glam::{DVec3, Vec3};
 use lancer_core::Rgb;
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::sampling::Uniform;
 use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution};
+use lancer_lesson::picture::painted;
 
 use super::reference::{eight_boxes, near_to_far};
 use super::{Lanes, PreparedRay, Subject};

@@ -2,7 +2,6 @@
 
 use std::collections::HashSet;
 
-use chapter_1::figures::fitted_exponent;
 use glam::{DVec2, DVec3};
 use lancer_accel::{Bvh, Grid};
 use lancer_core::geometry::{ConvexVolume, Interval, Ray};
@@ -13,6 +12,7 @@ use lancer_figure::{
     Axis, Chart, Color, Drawing, Effort, FAINT, Finished, HEADING, INK, LABEL, MUTED, Pen, Plate,
     Row, Series, Stroke, Style, Table, Text, category_color, decimals, method_color, number,
 };
+use lancer_lesson::judge::fitted_exponent;
 
 use crate::scenes::family;
 

@@ -13,7 +13,6 @@ mod sah;
 mod structures;
 mod volumes;
 
-use chapter_1::figures::{picture, shown};
 use lancer_core::Rgb;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::image::ImageSize;
@@ -21,6 +20,7 @@ use lancer_core::intersector::Hit;
 use lancer_core::sampling::PixelSampling;
 use lancer_core::scene::{Camera, Scene};
 use lancer_figure::{Figure, Picture};
+use lancer_lesson::picture::{picture, shown};
 
 use lancer_accel::structures::structure;
 

@@ -1,12 +1,12 @@
 //! 4.1: every primitive for every ray, and what a hierarchy makes of that.
 
-use chapter_1::figures::fitted_exponent;
 use lancer_accel::Bvh;
 use lancer_core::image::ImageSize;
 use lancer_core::intersector::{LinearScan, Observable};
 use lancer_figure::{
     Axis, Chart, Effort, Finished, Plate, Row, Series, Table, method_color, number, time_in_turn,
 };
+use lancer_lesson::judge::fitted_exponent;
 
 use crate::rays::{Kind, Rays};
 use crate::scenes::family;

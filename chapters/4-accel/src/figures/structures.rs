@@ -1,12 +1,12 @@
 //! 4.7: every index on the same rays: counted work, time, memory, and what the build is worth.
 
-use chapter_1::figures::fitted_exponent;
 use lancer_core::image::ImageSize;
 use lancer_core::intersector::{Intersector, TestCounts};
 use lancer_figure::{
     Axis, BarChart, Chart, Effort, Finished, Plate, Row, Series, Table, method_color, power_of_ten,
     time_in_turn,
 };
+use lancer_lesson::judge::fitted_exponent;
 
 use crate::rays::{Kind, Rays};
 use crate::scenes::{FAMILIES, Family};

@@ -1,6 +1,5 @@
 //! The drawings beside a walk: boxes, cells and primitives, seen from one side.
 
-use chapter_1::step::view::{Side, View};
 use glam::DVec3;
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
 use lancer_core::intersector::Hit;
@@ -8,6 +7,7 @@ use lancer_core::scene::{PrimitiveId, Scene};
 use lancer_figure::{
     Backdrop, Color, FAINT, INK, LABEL, MUTED, Pen, Point, Stroke, Style, Text, category_color,
 };
+use lancer_lesson::view::{Side, View};
 
 /// The most vertices of a mesh that are drawn as dots.
 const MOST_DOTS: usize = 1500;

@@ -6,21 +6,21 @@
 mod draw;
 pub mod record;
 
-use chapter_1::step::view::View;
-use chapter_1::step::{marked_picture, printable};
 use glam::DVec2;
 use lancer_accel::Bvh;
 use lancer_core::geometry::{Bounds3, Interval, Ray};
-use lancer_core::image::ImageSize;
 use lancer_core::intersector::{Hit, Intersector, LinearScan, TestCounts};
-use lancer_core::scene::load::Loaded;
+use lancer_core::method::Setting;
 use lancer_core::scene::{PrimitiveId, Scene};
 use lancer_core::world::World;
 use lancer_exercise::Shown;
 use lancer_figure::{Backdrop, INK, MUTED, Step, Tree, Walk, category_color, method_color};
+use lancer_lesson::chapter::{WalkOrder, Walkthrough};
+use lancer_lesson::picture::marked_picture;
+use lancer_lesson::view::{View, printable};
 use lancer_whitted::{Settings, Whitted};
 
-use lancer_accel::structures::Structure;
+use lancer_accel::structures::{STRUCTURES, Structure, structure};
 use record::{Event, Kind, Recorder};
 
 /// The most boxes and cells of an index that stay in the drawing: more cannot be told apart.
@@ -28,19 +28,14 @@ const MOST_DRAWN: u64 = 300;
 /// The most primitives that are named in one line.
 const MOST_NAMED: usize = 12;
 
-/// The ray that is followed, and through what.
-pub struct Request<'a> {
-    /// What the scene is called.
-    pub name: &'a str,
-    /// The scene.
-    pub loaded: &'a Loaded,
-    /// The size of the picture.
-    pub size: ImageSize,
-    /// Column and row of the pixel, both in the picture; the ray passes through its centre.
-    pub pixel: [u32; 2],
-    /// The indexes, one after the other.
-    pub structures: &'a [Structure],
-}
+/// A ray's way through the indexes, step by step.
+pub const WALK: Walkthrough = Walkthrough {
+    name: "accel",
+    about: "is the search for what the pixel's ray meets, through one index after the other: each box and cell on \
+            its way, each primitive that is tested, and a table of what all of them did",
+    uses: &[Setting::Index],
+    walk: |order| Ok(walk(order)),
+};
 
 /// What an index answered, and its work.
 struct Answer {
@@ -50,16 +45,21 @@ struct Answer {
     bytes: usize,
 }
 
-/// Walks with a pixel's ray through indexes.
-pub fn walk(request: &Request<'_>) -> Walk {
-    let Request { loaded, size, pixel: [x, y], structures, .. } = *request;
+/// Walks with a pixel's ray through the index of the order, or through all.
+///
+/// # Panics
+/// If the order names an index that there is not.
+pub fn walk(order: &WalkOrder<'_>) -> Walk {
+    let WalkOrder { loaded, size, pixel: [x, y], .. } = *order;
+    let one = order.index.map(structure);
+    let structures = one.as_ref().map_or(&STRUCTURES[..], std::slice::from_ref);
     let scene = &loaded.scene;
     let film = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
     let ray = scene.camera.primary_rays(size).through(film.x, film.y);
     let expected = LinearScan::new(scene).closest_hit(&ray, Interval::POSITIVE);
 
     let index = Bvh::build(scene);
-    let world = World { scene, index: &index };
+    let whitted = Whitted::new(World { scene, index: &index }, Settings::default());
     let view = draw::view(scene, &ray, expected);
 
     let mut walker = Walker { scene, ray, view, expected, steps: Vec::new() };
@@ -82,7 +82,7 @@ pub fn walk(request: &Request<'_>) -> Walk {
     Walk {
         title: format!(
             "The ray of pixel ({x}, {y}) of {} through {through}",
-            printable(request.name)
+            printable(order.name)
         ),
         subtitle: format!(
             "{size} pixels; {} triangles, {} spheres",
@@ -103,7 +103,7 @@ pub fn walk(request: &Request<'_>) -> Walk {
             ("primitive met", draw::hit(), false),
             ("primitive missed", MUTED, false),
         ],
-        picture: marked_picture(scene, &Whitted::new(world, Settings::default()), size, [x, y]),
+        picture: marked_picture(scene, size, order.pixel, |ray| whitted.trace(ray, &mut ())),
         calls: answers.iter().fold(Tree::new("ray", INK), |tree, answer| {
             let edge = format!("{} tested", answer.counts.primitives);
             tree.child(edge, Tree::new(answer.name, method_color(answer.name)))

@@ -37,6 +37,11 @@ impl Bounds3 {
         !self.min.cmple(self.max).all()
     }
 
+    /// The largest coordinate, its sign aside.
+    pub fn reach(&self) -> f64 {
+        self.min.abs().max(self.max.abs()).max_element()
+    }
+
     /// The middle of the box.
     pub fn center(&self) -> DVec3 {
         0.5 * self.min + 0.5 * self.max

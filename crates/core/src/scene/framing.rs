@@ -22,16 +22,6 @@ impl Scene {
         let radius = points().map(|(p, r)| (p - center).length() + r).fold(0.0, f64::max);
         Some(Sphere { center, radius })
     }
-
-    /// Whether anything shines: a point light, a face that emits, or the ambient term.
-    pub fn has_light(&self) -> bool {
-        !self.lights.is_empty() || self.ambient != Rgb::ZERO || self.has_area_light()
-    }
-
-    /// Whether a face of the mesh emits.
-    pub fn has_area_light(&self) -> bool {
-        self.mesh.faces.iter().any(|face| self.materials[face.material.0 as usize].emits())
-    }
 }
 
 /// Why a [`Camera`] cannot make a picture.

@@ -1,3 +1,5 @@
+use std::ops::Range;
+
 use glam::{DAffine3, DVec3};
 
 use super::MaterialId;
@@ -11,6 +13,17 @@ pub struct FaceId(pub u32);
 pub struct Face {
     /// What the polygon is made of.
     pub material: MaterialId,
+    /// The number of its first triangle.
+    pub first: u32,
+    /// The number of its triangles.
+    pub count: u32,
+}
+
+impl Face {
+    /// The numbers of its triangles.
+    pub fn triangles(&self) -> Range<usize> {
+        self.first as usize..(self.first + self.count) as usize
+    }
 }
 
 /// Three corners of one face.
@@ -56,11 +69,42 @@ impl Mesh {
         Some([self.normals[a as usize], self.normals[b as usize], self.normals[c as usize]])
     }
 
+    /// The borders of a face as closed loops of indices into [`Mesh::positions`], each along the direction of its
+    /// triangles: an n-gon has one, counter-clockwise seen from the outside; each hole adds one, clockwise.
+    ///
+    /// An edge along which two of the face's triangles meet is no border. Where loops touch in a vertex they are
+    /// told apart in the order of the triangles.
+    pub fn outline(&self, face: FaceId) -> Vec<Vec<u32>> {
+        let triangles = &self.triangles[self.faces[face.0 as usize].triangles()];
+        let mut border: Vec<[u32; 2]> = Vec::new();
+        for Triangle { vertices: [a, b, c], .. } in triangles {
+            for edge in [[*a, *b], [*b, *c], [*c, *a]] {
+                match border.iter().position(|known| *known == [edge[1], edge[0]]) {
+                    Some(inner) => _ = border.remove(inner),
+                    None => border.push(edge),
+                }
+            }
+        }
+        let mut loops = Vec::new();
+        while let Some(&[start, mut next]) = border.first() {
+            border.remove(0);
+            let mut outline = vec![start];
+            while next != start {
+                outline.push(next);
+                let Some(k) = border.iter().position(|edge| edge[0] == next) else { break };
+                next = border.remove(k)[1];
+            }
+            loops.push(outline);
+        }
+        loops
+    }
+
     /// Adds the convex or triangulated polygon `triangles`, given by indices into
     /// [`Mesh::positions`], as one flat face.
     pub fn push_face(&mut self, material: MaterialId, triangles: &[[u32; 3]]) {
         let face = FaceId(self.faces.len() as u32);
-        self.faces.push(Face { material });
+        let (first, count) = (self.triangles.len() as u32, triangles.len() as u32);
+        self.faces.push(Face { material, first, count });
         self.triangles.extend(triangles.iter().map(|&vertices| Triangle { vertices, face }));
         if !self.smooth.is_empty() {
             self.smooth.resize(self.triangles.len(), None);
@@ -87,15 +131,64 @@ impl Mesh {
         }
         self.positions.extend(other.positions.iter().map(|&p| transform.transform_point3(p)));
         self.normals.extend(other.normals.iter().map(|&n| (to_normal * n).normalize()));
-        self.faces.extend(
-            other
-                .faces
-                .iter()
-                .map(|f| Face { material: MaterialId(f.material.0 + first_material) }),
-        );
+        let triangle = self.triangles.len() as u32;
+        self.faces.extend(other.faces.iter().map(|f| Face {
+            material: MaterialId(f.material.0 + first_material),
+            first: f.first + triangle,
+            count: f.count,
+        }));
         self.triangles.extend(other.triangles.iter().map(|t| Triangle {
             vertices: turn(t.vertices.map(|k| k + vertex)),
             face: FaceId(t.face.0 + face),
         }));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mesh(positions: &[(f64, f64)], faces: &[&[[u32; 3]]]) -> Mesh {
+        let positions = positions.iter().map(|&(x, y)| DVec3::new(x, y, 0.0)).collect();
+        let mut mesh = Mesh { positions, ..Mesh::default() };
+        faces.iter().for_each(|triangles| mesh.push_face(MaterialId(0), triangles));
+        mesh
+    }
+
+    #[test]
+    fn a_polygon_is_its_border_without_diagonals() {
+        let corners = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 2.0), (0.0, 1.0), (9.0, 9.0)];
+        let pentagon = mesh(&corners, &[&[[0, 1, 5]], &[[0, 1, 2], [0, 2, 3], [0, 3, 4]]]);
+        assert_eq!(pentagon.faces[1].triangles(), 1..4);
+        assert_eq!(pentagon.outline(FaceId(1)), [[0, 1, 2, 3, 4]]);
+        let mut twice = pentagon.clone();
+        twice.append(&pentagon, DAffine3::IDENTITY, 0);
+        assert_eq!(twice.faces[3].triangles(), 5..8);
+        assert_eq!(twice.outline(FaceId(3)), [[6, 7, 8, 9, 10]]);
+        let mirrored = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
+        twice.append(&pentagon, mirrored, 0);
+        assert_eq!(twice.outline(FaceId(5)), [[12, 16, 15, 14, 13]]);
+    }
+
+    /// A square ring of eight triangles: the outer border counter-clockwise, the inner one clockwise.
+    #[test]
+    fn a_hole_is_a_loop_the_other_way_round() {
+        let square = |half: f64| [(-half, -half), (half, -half), (half, half), (-half, half)];
+        let corners = [square(2.0), square(1.0)].concat();
+        let around = (0..4).flat_map(|k| {
+            let next = (k + 1) % 4;
+            [[k, next, next + 4], [k, next + 4, k + 4]]
+        });
+        let ring = mesh(&corners, &[&around.collect::<Vec<_>>()]);
+        let area = |outline: &Vec<u32>| -> f64 {
+            let next = outline.iter().cycle().skip(1);
+            let cross = |(a, b): (&u32, &u32)| {
+                let [a, b] = [a, b].map(|k| ring.positions[*k as usize]);
+                0.5 * (a.x * b.y - a.y * b.x)
+            };
+            outline.iter().zip(next).map(cross).sum()
+        };
+        let loops = ring.outline(FaceId(0));
+        assert_eq!(loops.iter().map(area).collect::<Vec<_>>(), [16.0, -4.0]);
     }
 }

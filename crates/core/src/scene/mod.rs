@@ -13,7 +13,7 @@ mod mesh;
 pub use camera::{Camera, PrimaryRays};
 pub use counts::Counts;
 pub use framing::CameraError;
-pub use light::PointLight;
+pub use light::{AreaLight, PointLight, PointSource};
 pub use material::{Material, MaterialId, Pigment};
 pub use mesh::{Face, FaceId, Mesh, Triangle};
 
@@ -66,6 +66,12 @@ impl Scene {
             ambient: Rgb::ZERO,
             background: Rgb::ZERO,
         }
+    }
+
+    /// The material of that number.
+    #[inline]
+    pub fn material(&self, id: MaterialId) -> &Material {
+        &self.materials[id.0 as usize]
     }
 }
 

@@ -196,7 +196,8 @@ impl<'a> Source<'a> {
                 findings.note(kind, face, count);
             }
 
-            mesh.faces.push(Face { material: materials[run] });
+            let (first, count) = (mesh.triangles.len() as u32, parts.len() as u32);
+            mesh.faces.push(Face { material: materials[run], first, count });
             let face = FaceId(face as u32);
             mesh.triangles.extend(
                 parts
