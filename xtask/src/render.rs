@@ -8,7 +8,9 @@ use glam::DVec3;
 use lancer_accel::structures::Structure;
 use lancer_core::Rgb;
 use lancer_core::image::{Image, ImageSize, check_target, save};
-use lancer_core::method::{BuildIndex, ByProduct, Effect, Method, Order, Outcome, Setting, WorkKind};
+use lancer_core::method::{
+    BuildIndex, ByProduct, Effect, Method, Order, Outcome, Setting, WorkKind,
+};
 use lancer_core::render::Control;
 use lancer_core::sampling::{Pattern, PixelSampling};
 use lancer_core::scene::load::WarningKind;

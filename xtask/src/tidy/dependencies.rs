@@ -4,8 +4,9 @@ use toml::{Table, Value};
 use super::Violation;
 use crate::repository::Source;
 
-/// The arrows between packages: in `crates/`, core and figure use none of ours, exercise uses these two and
-/// the others use core alone, except in their own tests and benches; chapters, tests and xtask may use all.
+/// The arrows between packages: in `crates/`, core and figure use none of ours, exercise uses these two, lesson
+/// these three, and the others use core alone, except in their own tests and benches. A chapter uses any of the
+/// crates and no other chapter; tests and xtask may use all.
 ///
 /// # Errors
 /// If a manifest is no TOML.
@@ -41,7 +42,11 @@ pub fn check(sources: &[Source]) -> Result<Vec<Violation>> {
             let ours = packages.iter().find(|other| other.name() == Some(used));
             if ours.is_some_and(|other| !may_use(package.folder(), other.folder(), is_dev)) {
                 let problem = format!("{name} must not know {used}");
-                let cure = "take what it needs as an argument, or move the code to a chapter";
+                let cure = if used.starts_with("chapter") {
+                    "move what both need to crates/lesson, or below it"
+                } else {
+                    "take what it needs as an argument, or move the code to a chapter"
+                };
                 violations.push(package.violation(key, problem, cure));
             }
         }
@@ -52,12 +57,16 @@ pub fn check(sources: &[Source]) -> Result<Vec<Violation>> {
 const SHADOW: &str = "rename it: it takes the place of Rust's own `core`";
 
 fn may_use(user: &str, used: &str, is_dev: bool) -> bool {
-    match user.strip_prefix("crates/") {
-        None => true,
-        Some("core" | "figure") => false,
-        Some("exercise") if used == "crates/figure" => true,
-        Some(_) => used == "crates/core" || is_dev && used.starts_with("crates/"),
-    }
+    let crates: &[&str] = match user {
+        "crates/core" | "crates/figure" => &[],
+        "crates/exercise" => &["crates/core", "crates/figure"],
+        "crates/lesson" => &["crates/core", "crates/figure", "crates/exercise"],
+        _ if user.starts_with("chapters/") => return used.starts_with("crates/"),
+        _ if user.starts_with("crates/") && is_dev => return used.starts_with("crates/"),
+        _ if user.starts_with("crates/") => &["crates/core"],
+        _ => return true,
+    };
+    crates.contains(&used)
 }
 
 struct Manifest<'a> {
@@ -171,6 +180,13 @@ mod tests {
             ),
             ""
         );
+        assert_eq!(
+            with(
+                "crates/lesson/Cargo.toml",
+                "[package]\nname = \"lancer-lesson\"\n[dependencies]\nlancer-figure = {}\nlancer-core = {}\n"
+            ),
+            ""
+        );
     }
 
     #[test]
@@ -183,7 +199,17 @@ mod tests {
         assert_snapshot!(uses("core", "[dev-dependencies]\nlancer-a.workspace = true"), @"crates/core/Cargo.toml:4: lancer-core must not know lancer-a; take what it needs as an argument, or move the code to a chapter");
         assert_snapshot!(uses("figure", "[dependencies]\nlancer-core = { path = \"../core\" }"), @"crates/figure/Cargo.toml:4: lancer-figure must not know lancer-core; take what it needs as an argument, or move the code to a chapter");
         assert_snapshot!(uses("b", "[build-dependencies]\nlancer-a.workspace = true"), @"crates/b/Cargo.toml:4: lancer-b must not know lancer-a; take what it needs as an argument, or move the code to a chapter");
-        assert_snapshot!(uses("b", "[dev-dependencies]\nchapter-1.workspace = true"), @"crates/b/Cargo.toml:4: lancer-b must not know chapter-1; take what it needs as an argument, or move the code to a chapter");
+        assert_snapshot!(uses("b", "[dev-dependencies]\nchapter-1.workspace = true"), @"crates/b/Cargo.toml:4: lancer-b must not know chapter-1; move what both need to crates/lesson, or below it");
+        assert_snapshot!(uses("lesson", "[dependencies]\nlancer-a.workspace = true"), @"crates/lesson/Cargo.toml:4: lancer-lesson must not know lancer-a; take what it needs as an argument, or move the code to a chapter");
+        for section in ["dependencies", "dev-dependencies"] {
+            let text = format!(
+                "[package]\nname = \"chapter-2\"\n[{section}]\nchapter-1.workspace = true\n"
+            );
+            assert_eq!(
+                with("chapters/2/Cargo.toml", &text),
+                "chapters/2/Cargo.toml:4: chapter-2 must not know chapter-1; move what both need to crates/lesson, or below it\n"
+            );
+        }
         assert_snapshot!(uses("b", "[target.'cfg(unix)'.dependencies]\nother = { package = \"lancer-a\" }"), @"crates/b/Cargo.toml:4: lancer-b must not know lancer-a; take what it needs as an argument, or move the code to a chapter");
     }
 
