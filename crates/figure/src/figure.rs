@@ -20,6 +20,11 @@ impl Effort {
             Self::Full => full,
         }
     }
+
+    /// How often a study runs its contenders: `full` times, but once where nobody looks at seconds.
+    pub fn runs(self, full: usize) -> usize {
+        self.pick(1, full)
+    }
 }
 
 /// A figure of the course: a plate that a function makes, with the numbers behind it.

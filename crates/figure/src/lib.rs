@@ -76,7 +76,7 @@ pub use picture::Picture;
 pub use plate::{Panel, Plate, Row, Verdict};
 pub use shape::{Anchor, Color, Stroke, Style, Text};
 pub use speed_error::{CurvePoint, MethodCurve, SpeedError};
-pub use study::{Contender, Study, time_in_turn};
+pub use study::{Contender, Study, Trial, time_in_turn};
 pub use tree::Tree;
 pub use walk::{Backdrop, Step, Walk};
 pub use wrap::wrap;

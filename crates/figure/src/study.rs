@@ -1,5 +1,6 @@
 //! The one routine that measures speed against error.
 
+use std::fmt::Display;
 use std::time::Instant;
 
 use crate::chart::Spread;
@@ -9,33 +10,40 @@ use crate::shape::Color;
 use crate::speed_error::{CurvePoint, MethodCurve, SpeedError};
 
 /// A method at one setting of its knob, ready to be run.
-pub struct Contender<'a, T> {
+pub struct Contender<'a, K, T> {
     /// The curve it belongs to: the name of the method, or of its variant.
-    pub label: String,
+    pub curve: String,
     /// The curve's colour.
     pub color: Color,
-    /// The setting, as written beside its point.
-    pub knob: String,
+    /// The setting, written beside its point.
+    pub knob: K,
     /// One run: its outcome and the counted work, both the same every time.
     pub run: Box<dyn Fn() -> (T, u64) + 'a>,
 }
 
 /// One contender's measurements.
 #[derive(Clone, Debug, PartialEq)]
-struct Trial {
-    label: String,
-    color: Color,
-    knob: String,
-    seconds: Spread,
-    work: u64,
+pub struct Trial<K, T> {
+    /// The curve it belongs to.
+    pub curve: String,
+    /// The curve's colour.
+    pub color: Color,
+    /// The setting.
+    pub knob: K,
+    /// The seconds of its runs.
+    pub seconds: Spread,
+    /// The counted work.
+    pub work: u64,
+    /// What a run gave, such as its picture.
+    pub outcome: T,
     errors: Vec<(&'static str, f64)>,
 }
 
 /// How fast and how wrong several methods are, each at several settings.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Study {
+pub struct Study<K, T> {
     work_unit: String,
-    trials: Vec<Trial>,
+    trials: Vec<Trial<K, T>>,
 }
 
 /// Runs all `runs` times in turn (A B C A B C), so that a machine that slows down slows all of them. Returns
@@ -61,63 +69,49 @@ pub fn time_in_turn<F: Fn() -> T, T>(
     seconds.iter().map(|seconds| Spread::of_runs(seconds)).zip(outcomes).collect()
 }
 
-impl Study {
+impl<K: Display + PartialEq, T> Study<K, T> {
     /// Measures: runs all contenders `runs` times in turn (A B C A B C), so that a machine that slows
     /// down slows all of them, and judges each outcome by named errors, at least 0, against the
-    /// reference. Returns the outcomes as well, in the contenders' order.
+    /// reference.
     ///
     /// Contenders of one curve must follow each other in the knob's order; `work_unit` names the counted
     /// work.
     ///
     /// # Panics
     /// If `runs` is 0.
-    pub fn measure<T>(
+    pub fn measure<'a>(
         work_unit: impl Into<String>,
         runs: usize,
-        contenders: Vec<Contender<'_, T>>,
+        contenders: impl IntoIterator<Item = Contender<'a, K, T>>,
         judge: impl Fn(&T) -> Vec<(&'static str, f64)>,
-    ) -> (Self, Vec<T>) {
+    ) -> Self
+    where
+        K: 'a,
+        T: 'a,
+    {
+        let contenders: Vec<_> = contenders.into_iter().collect();
         let timed = time_in_turn(runs, contenders.iter().map(|contender| &*contender.run));
         let trials =
-            contenders.iter().zip(&timed).map(|(contender, (seconds, (outcome, work)))| Trial {
-                label: contender.label.clone(),
-                color: contender.color,
-                knob: contender.knob.clone(),
-                seconds: *seconds,
-                work: *work,
-                errors: judge(outcome),
+            contenders.into_iter().zip(timed).map(|(contender, (seconds, (outcome, work)))| {
+                let Contender { curve, color, knob, .. } = contender;
+                let errors = judge(&outcome);
+                Trial { curve, color, knob, seconds, work, outcome, errors }
             });
-        let study = Self { work_unit: work_unit.into(), trials: trials.collect() };
-        (study, timed.into_iter().map(|(_, (outcome, _))| outcome).collect())
+        Self { work_unit: work_unit.into(), trials: trials.collect() }
     }
 
-    fn trial(&self, label: &str, knob: &str) -> &Trial {
-        let found = self.trials.iter().find(|trial| trial.label == label && trial.knob == knob);
-        found.unwrap_or_else(|| panic!("no contender {label:?} at {knob:?}"))
+    /// All trials in the contenders' order, which is that of the table's rows.
+    pub fn trials(&self) -> &[Trial<K, T>] {
+        &self.trials
     }
 
-    /// The named error of one contender.
+    /// The trial of a curve at a setting.
     ///
     /// # Panics
-    /// If there is no such contender or error: a figure asks for what it has measured.
-    pub fn error(&self, label: &str, knob: &str, name: &str) -> f64 {
-        self.trial(label, knob).error(name)
-    }
-
-    /// The counted work of one contender.
-    ///
-    /// # Panics
-    /// If there is no such contender.
-    pub fn work(&self, label: &str, knob: &str) -> u64 {
-        self.trial(label, knob).work
-    }
-
-    /// The seconds of one contender's runs.
-    ///
-    /// # Panics
-    /// If there is no such contender.
-    pub fn seconds(&self, label: &str, knob: &str) -> Spread {
-        self.trial(label, knob).seconds
+    /// If there is none: a figure asks for what it has measured.
+    pub fn at(&self, curve: &str, knob: K) -> &Trial<K, T> {
+        let found = self.trials.iter().find(|trial| trial.curve == curve && trial.knob == knob);
+        found.unwrap_or_else(|| panic!("no contender {curve:?} at {knob}"))
     }
 
     /// The counted work at which a curve first comes down to an error: between two of its points by a
@@ -125,14 +119,15 @@ impl Study {
     ///
     /// # Panics
     /// If there is no such curve or error.
-    pub fn work_at_error(&self, label: &str, name: &str, level: f64) -> Option<f64> {
-        let curve: Vec<&Trial> = self.trials.iter().filter(|trial| trial.label == label).collect();
-        assert!(!curve.is_empty(), "no contender {label:?}");
-        if curve[0].error(name) <= level {
-            return Some(curve[0].work as f64);
+    pub fn work_at_error(&self, curve: &str, name: &str, level: f64) -> Option<f64> {
+        let trials = self.trials.iter().filter(|trial| trial.curve == curve);
+        let trials: Vec<&Trial<K, T>> = trials.collect();
+        assert!(!trials.is_empty(), "no contender {curve:?}");
+        if trials[0].error(name) <= level {
+            return Some(trials[0].work as f64);
         }
-        let [above, below] = curve.windows(2).find_map(|pair| {
-            let pair: [&Trial; 2] = pair.try_into().ok()?;
+        let [above, below] = trials.windows(2).find_map(|pair| {
+            let pair: [&Trial<K, T>; 2] = pair.try_into().ok()?;
             (pair[1].error(name) <= level).then_some(pair)
         })?;
         if below.error(name) <= 0.0 {
@@ -148,13 +143,18 @@ impl Study {
     /// # Panics
     /// If there is no such error.
     pub fn at_equal_error(&self, name: &str, level: f64, items: f64, per: &str) -> String {
-        let curves = self.trials.chunk_by(|a, b| a.label == b.label).map(|trials| {
-            let label = &trials[0].label;
-            let work = self.work_at_error(label, name, level).map(|work| number(work / items));
-            format!("{label} {}", work.as_deref().unwrap_or("never"))
+        let curves = self.curves().map(|trials| {
+            let curve = &trials[0].curve;
+            let work = self.work_at_error(curve, name, level).map(|work| number(work / items));
+            format!("{curve} {}", work.as_deref().unwrap_or("never"))
         });
         let curves: Vec<String> = curves.collect();
         format!("{name} {} takes, in {per}: {}", number(level), curves.join(", "))
+    }
+
+    /// The trials curve by curve.
+    fn curves(&self) -> impl Iterator<Item = &[Trial<K, T>]> {
+        self.trials.chunk_by(|a, b| a.curve == b.curve)
     }
 
     /// The chart of the error of that name.
@@ -162,10 +162,9 @@ impl Study {
     /// # Panics
     /// If the errors have no such name.
     pub fn chart(&self, error: &str) -> SpeedError {
-        let curves = self.trials.chunk_by(|a, b| a.label == b.label);
-        curves.fold(SpeedError::new(&self.work_unit, error), |chart, trials| {
+        self.curves().fold(SpeedError::new(&self.work_unit, error), |chart, trials| {
             chart.curve(MethodCurve {
-                label: trials[0].label.clone(),
+                label: trials[0].curve.clone(),
                 color: trials[0].color,
                 points: trials.iter().map(|trial| trial.point(error)).collect(),
             })
@@ -180,7 +179,8 @@ impl Study {
         let mut table = Table::new(columns.chain(errors.iter().map(|(name, _)| *name)));
         for trial in &self.trials {
             let Spread { low, mid, high } = trial.seconds;
-            let names = [trial.label.as_str(), &trial.knob].map(Value::from);
+            let knob = trial.knob.to_string();
+            let names = [trial.curve.as_str(), &knob].map(Value::from);
             let numbers = [trial.work.into(), low.into(), mid.into(), high.into()];
             let errors = trial.errors.iter().map(|(_, error)| Value::from(*error));
             table.push(names.into_iter().chain(numbers).chain(errors));
@@ -189,15 +189,19 @@ impl Study {
     }
 }
 
-impl Trial {
-    fn error(&self, name: &str) -> f64 {
+impl<K: Display, T> Trial<K, T> {
+    /// The error of that name.
+    ///
+    /// # Panics
+    /// If there is none: a figure asks for what it has measured.
+    pub fn error(&self, name: &str) -> f64 {
         let found = self.errors.iter().find(|(known, _)| *known == name);
         found.unwrap_or_else(|| panic!("no error {name:?}")).1
     }
 
     fn point(&self, error: &str) -> CurvePoint {
         CurvePoint {
-            knob: self.knob.clone(),
+            knob: self.knob.to_string(),
             seconds: self.seconds,
             work: self.work,
             error: self.error(error),
@@ -215,12 +219,12 @@ mod tests {
     #[test]
     fn contenders_run_in_turn_and_are_judged_by_their_outcome() {
         let order = RefCell::new(String::new());
-        let contender = |label: &str, knob: u64, outcome: f64| Contender {
-            label: label.to_owned(),
+        let contender = |curve: &str, knob: u64, outcome: f64| Contender {
+            curve: curve.to_owned(),
             color: category_color(0),
-            knob: knob.to_string(),
+            knob,
             run: {
-                let (name, order) = (format!("{label}{knob} "), &order);
+                let (name, order) = (format!("{curve}{knob} "), &order);
                 Box::new(move || {
                     order.borrow_mut().push_str(&name);
                     (outcome, 10 * knob)
@@ -229,14 +233,14 @@ mod tests {
         };
         let contenders =
             vec![contender("a", 1, 3.0), contender("a", 2, 2.5), contender("b", 1, 2.0)];
-        let (study, outcomes) = Study::measure("tests", 3, contenders, |&outcome: &f64| {
+        let study = Study::measure("tests", 3, contenders, |&outcome: &f64| {
             vec![("error", outcome - 2.0), ("square", (outcome - 2.0).powi(2))]
         });
         assert_eq!(*order.borrow(), "a1 a2 b1 ".repeat(3));
-        assert_eq!(outcomes, [3.0, 2.5, 2.0]);
-        assert_eq!(study.error("a", "2", "square"), 0.25);
-        assert_eq!(study.work("b", "1"), 10);
-        let Spread { low, mid, high } = study.seconds("b", "1");
+        assert_eq!([study.at("a", 1).outcome, study.trials()[1].outcome], [3.0, 2.5]);
+        assert_eq!(study.at("a", 2).error("square"), 0.25);
+        assert_eq!(study.at("b", 1).work, 10);
+        let Spread { low, mid, high } = study.at("b", 1).seconds;
         assert!(0.0 <= low && low <= mid && mid <= high);
         // From (10, 1) to (20, 1/2) the line has the slope −1: (40 / 3, 3 / 4) lies on it.
         let at = |label: &str, level: f64| study.work_at_error(label, "error", level);

@@ -116,28 +116,22 @@ fn false_rings(zone_plate: &ZonePlate, reference: &Image, image: &Image) -> f64 
 pub fn make(effort: Effort) -> Finished {
     let zone_plate = ZonePlate::new(effort.pick(96, 320));
     let reference = zone_plate.exact();
-    let contenders = PATTERNS
-        .iter()
-        .enumerate()
-        .flat_map(|(k, &(pattern, name))| {
-            let zone_plate = &zone_plate;
-            SAMPLES.map(|samples| Contender {
-                label: name.to_owned(),
-                color: [category_color(3), category_color(0), category_color(2)][k],
-                knob: samples.to_string(),
-                run: Box::new(move || {
-                    zone_plate.sampled(PixelSampling { pattern, samples, seed: 11 })
-                }),
-            })
+    let contenders = PATTERNS.iter().enumerate().flat_map(|(k, &(pattern, name))| {
+        let zone_plate = &zone_plate;
+        SAMPLES.map(|samples| Contender {
+            curve: name.to_owned(),
+            color: [category_color(3), category_color(0), category_color(2)][k],
+            knob: samples,
+            run: Box::new(move || zone_plate.sampled(PixelSampling { pattern, samples, seed: 11 })),
         })
-        .collect();
-    let (study, pictures) = Study::measure("samples", 3, contenders, |image: &Image| {
+    });
+    let study = Study::measure("samples", effort.runs(3), contenders, |image: &Image| {
         let errors = errors_of(&reference, image);
         let rings = false_rings(&zone_plate, &reference, image);
         errors.into_iter().chain([("false rings", rings)]).collect()
     });
 
-    let rings = |name: &str| study.error(name, "1", "false rings");
+    let rings = |name: &str| study.at(name, 1).error("false rings");
     let (regular, jittered) = (rings("regular"), rings("jittered"));
     let holds = regular > 0.9 && jittered.max(rings("Owen")) < 0.2;
     let claim = format!(
@@ -146,14 +140,10 @@ pub fn make(effort: Effort) -> Finished {
     );
 
     let picture = |name: &str, samples: u32| {
-        let curve = PATTERNS.iter().position(|(_, known)| *known == name).unwrap_or_default();
-        let point = SAMPLES.iter().position(|known| *known == samples).unwrap_or_default();
-        let error = study.error(name, &samples.to_string(), "RMSE");
-        Tile::new(
-            format!("{name}, {samples} per pixel"),
-            shown(&pictures[SAMPLES.len() * curve + point]),
-        )
-        .subtitle(format!("RMSE {error:.3}"))
+        let trial = study.at(name, samples);
+        Tile::new(format!("{name}, {samples} per pixel"), shown(&trial.outcome))
+            .subtitle(format!("RMSE {:.3}", trial.error("RMSE")))
+            .color(trial.color)
     };
     let pixels = zone_plate.size.pixels() as f64;
     let floor = Floor::new(effort);
@@ -161,9 +151,9 @@ pub fn make(effort: Effort) -> Finished {
         .panel(
             Montage::new()
                 .tile(Tile::new("exact", shown(&reference)).subtitle("rings ever finer to the lower right"))
-                .tile(picture("regular", 1).color(category_color(3)))
-                .tile(picture("jittered", 1).color(category_color(0)))
-                .tile(picture("jittered", 16).color(category_color(0))),
+                .tile(picture("regular", 1))
+                .tile(picture("jittered", 1))
+                .tile(picture("jittered", 16)),
         )
         .panel(study.chart("RMSE").slope(-0.5, "slope −1/2, random"))
         .panel(

@@ -64,38 +64,33 @@ pub fn make(effort: Effort) -> Finished {
     let rounding = f64::from(f32::EPSILON) / 48.0_f64.sqrt();
     let residual = rmse(&deeper.0, &reference.0).expect("pictures of one size") + rounding;
 
-    let contenders = LIMITS
-        .iter()
-        .enumerate()
-        .flat_map(|(k, &(at_limit, name))| {
-            DEPTHS.map(|max_depth| Contender {
-                label: name.to_owned(),
-                color: COLORS[k](),
-                knob: max_depth.to_string(),
-                run: Box::new(move || {
-                    let (image, counts) = render(Settings { at_limit, ..unlimited(max_depth) });
-                    ((image, counts.weight / pixels), counts.rays.total())
-                }),
-            })
+    let contenders = LIMITS.iter().enumerate().flat_map(|(k, &(at_limit, name))| {
+        DEPTHS.map(|max_depth| Contender {
+            curve: name.to_owned(),
+            color: COLORS[k](),
+            knob: max_depth,
+            run: Box::new(move || {
+                let (image, counts) = render(Settings { at_limit, ..unlimited(max_depth) });
+                ((image, counts.weight / pixels), counts.rays.total())
+            }),
         })
-        .collect();
-    let (study, outcomes) =
-        Study::measure("rays", 3, contenders, |(image, weight): &(Image, f64)| {
-            let errors = errors_of(&reference.0, image);
-            let mean = mean_error(&reference.0, image);
-            errors.into_iter().chain([("mean_abs", mean), ("weight_left", *weight)]).collect()
-        });
+    });
+    let judge = |(image, weight): &(Image, f64)| {
+        let (errors, mean) = (errors_of(&reference.0, image), mean_error(&reference.0, image));
+        errors.into_iter().chain([("mean_abs", mean), ("weight_left", *weight)]).collect()
+    };
+    let study = Study::measure("rays", effort.runs(3), contenders, judge);
 
     // The lost light per weight left: the mean radiance behind the cut rays, about the same everywhere.
     let lost = |depth: u32| {
-        let at = |name| study.error("black", &depth.to_string(), name);
-        at("mean_abs") / at("weight_left")
+        let trial = study.at("black", depth);
+        trial.error("mean_abs") / trial.error("weight_left")
     };
     let measured: Vec<u32> = DEPTHS.into_iter().filter(|depth| (1..=8).contains(depth)).collect();
     let ratios: Vec<f64> = measured.iter().map(|&depth| lost(depth)).collect();
     let least = ratios.iter().copied().fold(f64::INFINITY, f64::min);
     let most = ratios.iter().copied().fold(0.0, f64::max);
-    let fall = |name: &str| study.error("black", "1", name) / study.error("black", "8", name);
+    let fall = |name: &str| study.at("black", 1).error(name) / study.at("black", 8).error(name);
     let (error_fall, weight_fall) = (fall("mean_abs"), fall("weight_left"));
     let holds = most / least < 2.0 && error_fall.min(weight_fall) > 1000.0;
     let claim = format!(
@@ -107,25 +102,22 @@ pub fn make(effort: Effort) -> Finished {
 
     let mut montage = Montage::new().columns(5);
     for depth in [0, 1, 2, 3, 5] {
-        let k = DEPTHS.iter().position(|known| *known == depth).unwrap_or_default();
-        let knob = depth.to_string();
-        let rays = study.work("black", &knob) as f64 / pixels;
-        let error = study.error("black", &knob, "RMSE");
+        let trial = study.at("black", depth);
+        let (rays, error) = (trial.work as f64 / pixels, trial.error("RMSE"));
         montage = montage.tile(
-            Tile::new(format!("depth {depth}"), shown(&outcomes[k].0))
+            Tile::new(format!("depth {depth}"), shown(&trial.outcome.0))
                 .subtitle(format!("{rays:.1} rays/pixel, RMSE {}", number(error)))
                 .color(method_color("whitted")),
         );
     }
     let scale = HeatScale::log("|error|", 1e-4, 1.0);
     let mut at_depth_3 = Montage::new().color_bar(&scale);
-    for (k, (_, name)) in LIMITS.iter().enumerate() {
-        let depth_3 = DEPTHS.len() * k + 3;
-        let title = format!("error at depth 3, {name}");
+    for (_, name) in LIMITS {
+        let (trial, title) = (study.at(name, 3), format!("error at depth 3, {name}"));
         at_depth_3 = at_depth_3.tile(
-            error_tile(title, &scale, &reference.0, &outcomes[depth_3].0)
-                .subtitle(format!("RMSE {}", number(study.error(name, "3", "RMSE"))))
-                .color(COLORS[k]()),
+            error_tile(title, &scale, &reference.0, &trial.outcome.0)
+                .subtitle(format!("RMSE {}", number(trial.error("RMSE"))))
+                .color(trial.color),
         );
     }
     let mut bounces = Chart::new(Axis::linear("depth limit, Max_Prof"), Axis::log("per pixel"))
@@ -134,11 +126,11 @@ pub fn make(effort: Effort) -> Finished {
         ("weight_left", "weight of the cut rays", category_color(3)),
         ("mean_abs", "mean |error|, black at the limit", method_color("whitted")),
     ] {
-        let points = DEPTHS.map(|d| (f64::from(d), study.error("black", &d.to_string(), name)));
+        let points = DEPTHS.map(|d| (f64::from(d), study.at("black", d).error(name)));
         bounces = bounces.series(Series::new(label, color).points(points));
     }
     let best = |depth: u32| {
-        let error = |name: &str| study.error(name, &depth.to_string(), "RMSE");
+        let error = |name: &str| study.at(name, depth).error("RMSE");
         let by_error =
             |a: &&(AtLimit, &str), b: &&(AtLimit, &str)| error(a.1).total_cmp(&error(b.1));
         LIMITS.iter().min_by(by_error).map_or("", |(_, name)| name)

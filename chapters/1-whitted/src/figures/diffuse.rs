@@ -5,16 +5,16 @@ use lancer_accel::ObvhsBvh2;
 use lancer_core::Rgb;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::image::{Image, ImageSize};
-use lancer_core::metric::{absolute_error_map, rmse};
+use lancer_core::metric::rmse;
 use lancer_core::render::Rendering;
 use lancer_core::sampling::{Pattern, PixelSampling, Uniform};
 use lancer_core::scene::{Pigment, Scene};
 use lancer_core::world::World;
 use lancer_figure::{
     Axis, Chart, Contender, Effort, Finished, HeatScale, Montage, Plate, Row, Series, Study, Tile,
-    category_color, method_color, number,
+    Trial, category_color, method_color, number,
 };
-use lancer_lesson::judge::{error_tile, errors_of, pixelwise};
+use lancer_lesson::judge::{error_tile, errors_of, mean_error, pixelwise};
 use lancer_lesson::picture::{picture, shown};
 use lancer_lesson::scenes::parsed;
 use lancer_whitted::{Lighting, RayCounts, Settings};
@@ -132,6 +132,9 @@ const CONSTANT: &str = "Whitted with the best I_a";
 const PATHS: &str = "random paths";
 const PATHS_PER_PIXEL: [u32; 5] = [1, 4, 16, 64, 256];
 
+/// A method's picture of the room, with the method as it is in the spheres.
+type InRoom = Trial<u32, (Image, [Method; 5])>;
+
 pub fn make(effort: Effort) -> Finished {
     let room = parsed("plaster", ROOM);
     let size = effort.pick(ImageSize::new(40, 40), ImageSize::new(128, 128));
@@ -151,23 +154,21 @@ pub fn make(effort: Effort) -> Finished {
     let constant = |rho: f64| Method::Whitted { ambient: Rgb::splat(rho / (1.0 - rho)) };
     let paths = PATHS_PER_PIXEL.map(|samples| {
         let method = Method::Paths { samples, seed: 3 };
-        (PATHS, samples.to_string(), method, RHO.map(|_| method))
+        (PATHS, samples, method, RHO.map(|_| method))
     });
     let ambient = |ambient: Rgb| Method::Whitted { ambient };
     let methods = [
-        (NOTHING, "1".to_owned(), ambient(Rgb::ZERO), RHO.map(nothing)),
-        (CONSTANT, "1".to_owned(), ambient(best), RHO.map(constant)),
+        (NOTHING, 1, ambient(Rgb::ZERO), RHO.map(nothing)),
+        (CONSTANT, 1, ambient(best), RHO.map(constant)),
     ];
     let colors = [category_color(4), method_color("whitted"), method_color("path")];
     let color = |label: &str| {
         let known = [NOTHING, CONSTANT, PATHS].iter().position(|known| *known == label);
         colors[known.unwrap_or_default()]
     };
-    let contenders = methods
-        .into_iter()
-        .chain(paths)
-        .map(|(label, knob, in_room, in_spheres)| Contender {
-            label: label.to_owned(),
+    let contenders =
+        methods.into_iter().chain(paths).map(|(label, knob, in_room, in_spheres)| Contender {
+            curve: label.to_owned(),
             color: color(label),
             knob,
             run: {
@@ -177,33 +178,29 @@ pub fn make(effort: Effort) -> Finished {
                     ((image, in_spheres), rays)
                 })
             },
-        })
-        .collect();
-    let (study, outcomes) =
-        Study::measure("rays", 3, contenders, |(image, in_spheres): &(Image, [Method; 5])| {
-            let errors = errors_of(&reference, image);
-            let spheres = IN_SPHERE.into_iter().zip(in_spheres.iter().zip(RHO));
-            let spheres = spheres.map(|(name, (method, rho))| (name, in_sphere(*method, rho)));
-            errors.into_iter().chain(spheres).collect()
         });
+    let judge = |(image, in_spheres): &(Image, [Method; 5])| {
+        let errors = errors_of(&reference, image);
+        let spheres = IN_SPHERE.into_iter().zip(in_spheres.iter().zip(RHO));
+        let spheres = spheres.map(|(name, (method, rho))| (name, in_sphere(*method, rho)));
+        errors.into_iter().chain(spheres).collect()
+    };
+    let study = Study::measure("rays", effort.runs(3), contenders, judge);
+    let (nothing, constant) = (study.at(NOTHING, 1), study.at(CONSTANT, 1));
+    let (some_paths, most_paths) = (study.at(PATHS, 16), study.at(PATHS, 256));
 
-    let radiance = |label: &str, knob: &str, k: usize| study.error(label, knob, IN_SPHERE[k]);
-    let off =
-        |label: &str, knob: &str, k: usize| (radiance(label, knob, k) * (1.0 - RHO[k]) - 1.0).abs();
+    let off = |trial: &InRoom, k: usize| (trial.error(IN_SPHERE[k]) * (1.0 - RHO[k]) - 1.0).abs();
     // The number of surfaces on a path is geometric, with the relative deviation √ρ; 5.2 deviations for
     // five spheres are a false alarm in a million.
     let count = f64::from(PATHS_PER_PIXEL[4] * SPHERE_SIDE * SPHERE_SIDE);
-    let constant_is_exact = (0..RHO.len()).all(|k| off(CONSTANT, "1", k) < f64::from(f32::EPSILON));
-    let paths_agree = (0..RHO.len()).all(|k| off(PATHS, "256", k) < 5.2 * (RHO[k] / count).sqrt());
+    let constant_is_exact = (0..RHO.len()).all(|k| off(constant, k) < f64::from(f32::EPSILON));
+    let paths_agree = (0..RHO.len()).all(|k| off(most_paths, k) < 5.2 * (RHO[k] / count).sqrt());
     let black = Image::new(size);
-    let mean = |image: &Image| {
-        let map = absolute_error_map(&black, image).expect("pictures of one size");
-        map.iter().sum::<f64>() / map.len() as f64
-    };
-    let left = mean(&pixelwise(&outcomes[1].0, &reference, |a, b| a - b)) / mean(&indirect);
+    let mean = |image: &Image| mean_error(&black, image);
+    let left = mean(&pixelwise(&constant.outcome.0, &reference, |a, b| a - b)) / mean(&indirect);
     let share = mean(&indirect) / mean(&reference);
     // What the constant leaves is no noise of the reference.
-    let is_seen = study.error(CONSTANT, "1", "RMSE") > 2.0 * residual;
+    let is_seen = constant.error("RMSE") > 2.0 * residual;
     let holds = constant_is_exact && paths_agree && is_seen;
     let claim = format!(
         "In a matte sphere a constant stands for the light between surfaces exactly, I_a = direct / (1 − ρ); \
@@ -212,23 +209,23 @@ pub fn make(effort: Effort) -> Finished {
         100.0 * left
     );
 
-    let tile = |k: usize, title: &str, label: &str, knob: &str| {
-        let error = number(study.error(label, knob, "RMSE"));
-        Tile::new(title, shown(&outcomes[k].0))
-            .subtitle(format!("RMSE {error}"))
-            .color(color(label))
+    let tile = |title: &str, trial: &InRoom| {
+        Tile::new(title, shown(&trial.outcome.0))
+            .subtitle(format!("RMSE {}", number(trial.error("RMSE"))))
+            .color(trial.color)
     };
     let pictures = Montage::new()
-        .tile(tile(0, "I_a = 0", NOTHING, "1"))
-        .tile(tile(1, "best I_a", CONSTANT, "1"))
-        .tile(tile(4, "16 paths per pixel", PATHS, "16"))
+        .tile(tile("I_a = 0", nothing))
+        .tile(tile("best I_a", constant))
+        .tile(tile("16 paths per pixel", some_paths))
         .tile(Tile::new("reference", shown(&reference)).color(method_color("reference")));
     let scale = HeatScale::linear("|error|", 0.0, 0.2);
-    let errors = |title: &str, k: usize| error_tile(title, &scale, &reference, &outcomes[k].0);
+    let errors =
+        |title: &str, trial: &InRoom| error_tile(title, &scale, &reference, &trial.outcome.0);
     let maps = Montage::new()
-        .tile(errors("error: I_a = 0", 0))
-        .tile(errors("error: best I_a", 1))
-        .tile(errors("error: 16 paths", 4))
+        .tile(errors("error: I_a = 0", nothing))
+        .tile(errors("error: best I_a", constant))
+        .tile(errors("error: 16 paths", some_paths))
         .color_bar(&scale);
     let mut spheres = Chart::new(
         Axis::linear("reflectance ρ of the sphere").between(0.0, 1.0),
@@ -240,9 +237,10 @@ pub fn make(effort: Effort) -> Finished {
             .curve()
             .points((0..=95).map(|k| f64::from(k) / 100.0).map(|rho| (rho, 1.0 / (1.0 - rho)))),
     );
-    for (label, knob) in [(NOTHING, "1"), (CONSTANT, "1"), (PATHS, "256")] {
-        let points = (0..RHO.len()).map(|k| (RHO[k], radiance(label, knob, k)));
-        spheres = spheres.series(Series::new(label, color(label)).scatter().points(points));
+    for trial in [nothing, constant, most_paths] {
+        let points = (0..RHO.len()).map(|k| (RHO[k], trial.error(IN_SPHERE[k])));
+        let series = Series::new(&trial.curve, trial.color).scatter();
+        spheres = spheres.series(series.points(points));
     }
     let plate = Plate::new("1.10", "What a constant ambient term can stand for", claim, holds)
         .panel(pictures)
@@ -251,7 +249,7 @@ pub fn make(effort: Effort) -> Finished {
         .panel(study.chart("RMSE").slope(-0.5, "slope −1/2, random").reference_error(residual))
         .note("« Éclairage diffus mal représenté »", "only the directions of the lamps, R and T are looked along; \
              a wall's colour on its neighbours, and the light in corners, come from all the others")
-        .note("Equal error", study.at_equal_error("RMSE", study.error(CONSTANT, "1", "RMSE"), size.pixels() as f64, "rays per pixel"))
+        .note("Equal error", study.at_equal_error("RMSE", constant.error("RMSE"), size.pixels() as f64, "rays per pixel"))
         .note("Method", format!(
             "eq:ambient with the I_a of least squares, {} in red, green and blue; random paths ask for the lamps at \
              each surface and go on with the probability ρ_d", best.to_array().map(|c| format!("{c:.3}")).join(", ")

@@ -1,5 +1,7 @@
 //! 1.9: a mirror lights the floor, and Whitted's method does not see it: lamps are aimed at directly.
 
+use std::fmt;
+
 use glam::{DVec2, DVec3};
 use lancer_accel::ObvhsBvh2;
 use lancer_core::Rgb;
@@ -12,7 +14,7 @@ use lancer_core::sampling::{Pattern, PixelSampling, Uniform};
 use lancer_core::scene::{MaterialId, PrimaryRays, Scene};
 use lancer_core::world::{SurfacePoint, World};
 use lancer_figure::{
-    Contender, Effort, Finished, HeatScale, Montage, Plate, Study, Tile, category_color,
+    Contender, Effort, Finished, HeatScale, Montage, Plate, Study, Tile, Trial, category_color,
     method_color, number,
 };
 use lancer_lesson::judge::{error_tile, errors_of, pixelwise};
@@ -200,6 +202,22 @@ struct Outcome {
     solid_angle: f64,
 }
 
+/// What a picture is made with: samples of a pixel alone, or rays from the lamp as well.
+#[derive(Clone, Copy, PartialEq)]
+enum Knob {
+    PerPixel(u32),
+    FromLamp(u32),
+}
+
+impl fmt::Display for Knob {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::PerPixel(samples) => write!(f, "{samples} per pixel"),
+            Self::FromLamp(rays) => write!(f, "{rays} from the lamp"),
+        }
+    }
+}
+
 pub fn make(effort: Effort) -> Finished {
     let scene = parsed("indirect", SCENE);
     let index = ObvhsBvh2::build(&scene);
@@ -238,17 +256,15 @@ pub fn make(effort: Effort) -> Finished {
     let light_rays = effort.pick([1 << 8, 1 << 12, 1 << 16], [1 << 14, 1 << 17, 1 << 20]);
     let settings =
         settings.chain(light_rays.map(|count| (FORWARD, category_color(3), SAMPLES[1], count)));
-    let contenders = settings
-        .map(|(label, color, samples, light_rays)| Contender {
-            label: label.to_owned(),
-            color,
-            knob: match light_rays {
-                0 => format!("{samples} per pixel"),
-                _ => format!("{light_rays} from the lamp"),
-            },
-            run: Box::new(move || run(samples, light_rays)),
-        })
-        .collect();
+    let contenders = settings.map(|(label, color, samples, light_rays)| Contender {
+        curve: label.to_owned(),
+        color,
+        knob: match light_rays {
+            0 => Knob::PerPixel(samples),
+            _ => Knob::FromLamp(light_rays),
+        },
+        run: Box::new(move || run(samples, light_rays)),
+    });
 
     // What the mirror adds to a picture beside itself, as a share of what it should add.
     let beside = beside_the_mirror(&film);
@@ -260,15 +276,17 @@ pub fn make(effort: Effort) -> Finished {
         let without = whitted(&blind, outcome.samples, SEED).0;
         total(&pixelwise(&outcome.image, &without, |a, b| a - b)) / total(&missing)
     };
-    let (study, outcomes) = Study::measure("rays", 3, contenders, |outcome: &Outcome| {
+    let study = Study::measure("rays", effort.runs(3), contenders, |outcome: &Outcome| {
         let errors = errors_of(&reference, &outcome.image);
         let more = [("mirrored_light", share(outcome)), ("solid_angle", outcome.solid_angle)];
         errors.into_iter().chain(more).collect()
     });
 
-    let many = format!("{} from the lamp", light_rays[2]);
-    let shares = SAMPLES.map(|n| study.error(WHITTED, &format!("{n} per pixel"), "mirrored_light"));
-    let found = study.error(FORWARD, &many, "mirrored_light");
+    let by_whitted = SAMPLES.map(|samples| study.at(WHITTED, Knob::PerPixel(samples)));
+    let forward = light_rays.map(|count| study.at(FORWARD, Knob::FromLamp(count)));
+    let (whitted, many) = (by_whitted[2], forward[2]);
+    let shares = by_whitted.map(|trial| trial.error("mirrored_light"));
+    let found = many.error("mirrored_light");
     let holds = shares == [0.0; 3] && (found - 1.0).abs() < 0.05;
     let claim = format!(
         "Of the light that the mirror sends to the floor and to the ball, Whitted's picture has {} %, with \
@@ -277,26 +295,25 @@ pub fn make(effort: Effort) -> Finished {
         100.0 * found,
     );
 
-    let tile = |title: &str, image: &Image, knob: &str| {
-        let label = if title.starts_with(FORWARD) { FORWARD } else { WHITTED };
-        let color = if label == FORWARD { category_color(3) } else { method_color("whitted") };
-        let error = number(study.error(label, knob, "RMSE"));
-        Tile::new(title, shown(image)).subtitle(format!("{knob}, RMSE {error}")).color(color)
+    let tile = |trial: &Trial<Knob, Outcome>| {
+        let error = number(trial.error("RMSE"));
+        Tile::new(&trial.curve, shown(&trial.outcome.image))
+            .subtitle(format!("{}, RMSE {error}", trial.knob))
+            .color(trial.color)
     };
-    let pictures = Montage::new()
-        .tile(tile(WHITTED, &outcomes[2].image, "16 per pixel"))
-        .tile(tile(FORWARD, &outcomes[5].image, &many))
-        .tile(
-            Tile::new("reference", shown(&reference))
-                .color(method_color("reference"))
-                .subtitle("closed form"),
-        );
+    let pictures = Montage::new().tile(tile(whitted)).tile(tile(many)).tile(
+        Tile::new("reference", shown(&reference))
+            .color(method_color("reference"))
+            .subtitle("closed form"),
+    );
     let scale = HeatScale::log("|error|", 1e-3, 1.0);
-    let errors = |title: &str, image: &Image| error_tile(title, &scale, &reference, image);
+    let errors = |title: String, trial: &Trial<Knob, Outcome>| {
+        error_tile(title, &scale, &reference, &trial.outcome.image)
+    };
     let maps = Montage::new()
-        .tile(errors("error: Whitted", &outcomes[2].image))
-        .tile(errors(&format!("error: {} light rays", light_rays[1]), &outcomes[4].image))
-        .tile(errors(&format!("error: {} light rays", light_rays[2]), &outcomes[5].image))
+        .tile(errors("error: Whitted".to_owned(), whitted))
+        .tile(errors(format!("error: {} light rays", light_rays[1]), forward[1]))
+        .tile(errors(format!("error: {} light rays", light_rays[2]), many))
         .color_bar(&scale);
     let plate = Plate::new("1.9", "A mirror that lights nothing", claim, holds)
         .panel(pictures)

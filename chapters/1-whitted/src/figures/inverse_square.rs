@@ -187,7 +187,7 @@ pub fn make(effort: Effort) -> Finished {
     {
         for ((cuts, scene), index) in CUTS.into_iter().zip(scenes).zip(indexes) {
             contenders.push(Contender {
-                label: label.to_owned(),
+                curve: label.to_owned(),
                 color: category_color(color),
                 knob: format!("{} points", cuts * cuts),
                 run: Box::new(move || {
@@ -198,7 +198,7 @@ pub fn make(effort: Effort) -> Finished {
         }
     }
     let judge = |&error: &f64| vec![("relative error", error)];
-    let (study, _) = Study::measure("shadow rays", 31, contenders, judge);
+    let study = Study::measure("shadow rays", effort.runs(31), contenders, judge);
 
     let mut laws = Chart::new(Axis::log("distance from the lamp"), Axis::log("light received"))
         .title("Three laws")

@@ -8,7 +8,7 @@ use lancer_core::render::Rendering;
 use lancer_core::scene::{Scene, SphereObject};
 use lancer_figure::{
     Axis, Chart, Color, Contender, Effort, Finished, HeatScale, Montage, Plate, Row, Series, Study,
-    Table, Tile, Value, category_color, decimals, method_color, number,
+    Table, Tile, Trial, Value, category_color, decimals, method_color, number,
 };
 use lancer_lesson::judge::{error_tile, errors_of, mean};
 use lancer_lesson::picture::shown;
@@ -78,7 +78,7 @@ fn glass_balls() -> Scene {
 }
 
 /// What is measured in one scene.
-struct Trial {
+struct InScene {
     name: &'static str,
     scene: Scene,
     size: ImageSize,
@@ -86,46 +86,34 @@ struct Trial {
     reference_rays: u64,
     /// The reference with a ten times larger minimum weight.
     rougher: Image,
-    study: Study,
-    pictures: Vec<Image>,
+    study: Study<f64, Image>,
     /// The error at which the rules are compared.
     level: f64,
     /// A limit of each rule, with about as many rays.
     alike: [f64; 3],
 }
 
-impl Trial {
-    fn new(name: &'static str, scene: Scene, size: ImageSize, level: f64, alike: [f64; 3]) -> Self {
+impl InScene {
+    fn new(effort: Effort, name: &'static str, scene: Scene, level: f64, alike: [f64; 3]) -> Self {
+        let size = effort.pick(ImageSize::new(32, 32), ImageSize::new(120, 120));
         let render = |settings| whitted_picture(&scene, settings, size);
         let Rendering { image: reference, counts, .. } = render(weight(NEGLIGIBLE));
         let rougher = render(weight(10.0 * NEGLIGIBLE)).image;
         let contenders = RULES.iter().flat_map(|rule| {
             rule.limits.iter().map(move |&limit| Contender {
-                label: rule.name.to_owned(),
+                curve: rule.name.to_owned(),
                 color: (rule.color)(),
-                knob: limit.to_string(),
+                knob: limit,
                 run: Box::new(move || {
                     let rendering = render((rule.settings)(limit));
                     (rendering.image, rendering.counts.total())
                 }),
             })
         });
-        let (study, pictures) = Study::measure("rays", 3, contenders.collect(), |image| {
-            errors_of(&reference, image).to_vec()
-        });
+        let judge = |image: &Image| errors_of(&reference, image).to_vec();
+        let study = Study::measure("rays", effort.runs(3), contenders, judge);
         let reference_rays = counts.total();
-        Self {
-            name,
-            size,
-            reference,
-            reference_rays,
-            rougher,
-            study,
-            pictures,
-            level,
-            alike,
-            scene,
-        }
+        Self { name, size, reference, reference_rays, rougher, study, level, alike, scene }
     }
 
     /// Rays per pixel at which a rule comes down to the scene's error; infinite if it never does.
@@ -135,10 +123,8 @@ impl Trial {
     }
 
     /// The picture by a rule at its limit of `alike`.
-    fn picture(&self, rule: usize) -> &Image {
-        let before: usize = RULES[..rule].iter().map(|rule| rule.limits.len()).sum();
-        let place = RULES[rule].limits.iter().position(|known| *known == self.alike[rule]);
-        &self.pictures[before + place.expect("a limit that was tried")]
+    fn alike(&self, rule: usize) -> &Trial<f64, Image> {
+        self.study.at(RULES[rule].name, self.alike[rule])
     }
 
     /// What part of the reference's light a picture has too much.
@@ -157,7 +143,7 @@ struct Average {
 }
 
 impl Average {
-    fn new(trial: &Trial) -> Self {
+    fn new(trial: &InScene) -> Self {
         let mut sum = vec![[0.0_f64; 3]; trial.size.pixels()];
         let (mut errors, mut biases) = (Vec::new(), Vec::new());
         for seed in 0..SEEDS {
@@ -187,14 +173,13 @@ impl Average {
 }
 
 pub fn make(effort: Effort) -> Finished {
-    let size = effort.pick(ImageSize::new(32, 32), ImageSize::new(120, 120));
     let trials = [
-        Trial::new("whitted", scenes::whitted(), size, 0.01, [2.0, 0.1, 0.1]),
-        Trial::new("27 glass balls", glass_balls(), size, 0.03, [4.0, 0.05, 0.1]),
+        InScene::new(effort, "whitted", scenes::whitted(), 0.01, [2.0, 0.1, 0.1]),
+        InScene::new(effort, "27 glass balls", glass_balls(), 0.03, [4.0, 0.05, 0.1]),
     ];
     let averages = trials.each_ref().map(Average::new);
     let [whitted, glass] = &trials;
-    let biases = |trial: &Trial| [0, 1].map(|rule| trial.bias(trial.picture(rule)));
+    let biases = |trial: &InScene| [0, 1].map(|rule| trial.bias(&trial.alike(rule).outcome));
     let holds = trials.iter().zip(&averages).all(|(trial, average)| {
         let cheaper = trial.rays("weight") < trial.rays("depth");
         let darker = biases(trial).iter().all(|bias| *bias < -Z * average.standard_error);
@@ -209,6 +194,7 @@ pub fn make(effort: Effort) -> Finished {
         glass.rays("depth"),
     );
 
+    let size = glass.size;
     let pixels = size.pixels() as f64;
     let [glass_average, whitted_average] = [&averages[1], &averages[0]];
     let [pictures, maps] = montages(glass);
@@ -222,7 +208,7 @@ pub fn make(effort: Effort) -> Finished {
         let at = trial.study.at_equal_error("RMSE", trial.level, pixels, "rays per pixel");
         plate = plate.note(format!("Equal error, {}", trial.name), at);
     }
-    let residual = |trial: &Trial| {
+    let residual = |trial: &InScene| {
         let error = rmse(&trial.reference, &trial.rougher).expect("pictures of one size");
         let light = trial.bias(&trial.rougher).abs();
         format!("an RMSE of {} and {} % of its light", number(error), number(100.0 * light))
@@ -253,7 +239,7 @@ pub fn make(effort: Effort) -> Finished {
 }
 
 /// The pictures with about as many rays, and their errors.
-fn montages(trial: &Trial) -> [Montage; 2] {
+fn montages(trial: &InScene) -> [Montage; 2] {
     let per_pixel = |rays: u64| rays as f64 / trial.size.pixels() as f64;
     let whole = Tile::new("the whole tree", shown(&trial.reference))
         .subtitle(format!("{:.0} rays/pixel", per_pixel(trial.reference_rays)))
@@ -261,9 +247,8 @@ fn montages(trial: &Trial) -> [Montage; 2] {
     let scale = HeatScale::log("|error|", 1e-3, 1.0);
     let (mut pictures, mut maps) = (Montage::new().tile(whole), Montage::new().color_bar(&scale));
     for (k, rule) in RULES.iter().enumerate() {
-        let (image, knob) = (trial.picture(k), trial.alike[k].to_string());
-        let rays = per_pixel(trial.study.work(rule.name, &knob));
-        let error = trial.study.error(rule.name, &knob, "RMSE");
+        let Trial { outcome: image, knob, work, .. } = trial.alike(k);
+        let (rays, error) = (per_pixel(*work), trial.alike(k).error("RMSE"));
         pictures = pictures.tile(
             Tile::new(format!("{} {knob}", rule.name), shown(image))
                 .subtitle(format!("{rays:.1} rays/pixel, RMSE {error:.3}"))
@@ -281,15 +266,14 @@ fn montages(trial: &Trial) -> [Montage; 2] {
 }
 
 /// The error of a mean of pictures: only roulette's falls.
-fn averaged(trial: &Trial, average: &Average) -> Chart {
+fn averaged(trial: &InScene, average: &Average) -> Chart {
     let mut chart = Chart::new(Axis::log("pictures averaged"), Axis::log("RMSE of their mean"))
         .title(format!("{}: the mean of several pictures", trial.name))
         .height(440.0)
         .slope(-0.5, "slope −1/2");
     for (k, rule) in RULES.iter().enumerate() {
-        let knob = trial.alike[k].to_string();
-        let series = Series::new(format!("{} {knob}", rule.name), (rule.color)());
-        let same = trial.study.error(rule.name, &knob, "RMSE");
+        let series = Series::new(format!("{} {}", rule.name, trial.alike[k]), (rule.color)());
+        let same = trial.alike(k).error("RMSE");
         let errors = average.errors.iter().copied();
         chart = chart.series(match rule.name {
             "roulette" => series.points(errors),
@@ -301,19 +285,15 @@ fn averaged(trial: &Trial, average: &Average) -> Chart {
 
 /// The measurements of both scenes, with the part of light that each picture has too much and the z of
 /// roulette's mean.
-fn table(trials: &[Trial], averages: &[Average]) -> Table {
+fn table(trials: &[InScene], averages: &[Average]) -> Table {
     let columns = trials[0].study.table().columns().to_vec();
     let columns = columns.iter().map(String::as_str);
     let mut table = Table::new(["scene"].into_iter().chain(columns).chain(["bias", "z"]));
     for (trial, average) in trials.iter().zip(averages) {
-        for (row, image) in trial.study.table().rows().iter().zip(&trial.pictures) {
+        for (row, at) in trial.study.table().rows().iter().zip(trial.study.trials()) {
             // The z is of roulette's mean.
-            let z = if matches!(&row[0], Value::Text(rule) if rule == "roulette") {
-                average.z()
-            } else {
-                f64::NAN
-            };
-            let ours: [Value; 2] = [trial.bias(image).into(), z.into()];
+            let z = if at.curve == "roulette" { average.z() } else { f64::NAN };
+            let ours: [Value; 2] = [trial.bias(&at.outcome).into(), z.into()];
             table.push([trial.name.into()].into_iter().chain(row.iter().cloned()).chain(ours));
         }
     }

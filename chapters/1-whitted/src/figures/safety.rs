@@ -9,7 +9,7 @@ use lancer_core::image::ImageSize;
 use lancer_core::sampling::Uniform;
 use lancer_core::world::SurfacePoint;
 use lancer_figure::{
-    Axis, BarChart, Chart, Contender, Effort, Finished, Plate, Row, Series, Spread, Study,
+    Axis, BarChart, Chart, Contender, Effort, Finished, Plate, Row, Series, Spread, Study, Trial,
     category_color, number,
 };
 
@@ -89,19 +89,18 @@ pub fn make(effort: Effort) -> Finished {
     let names =
         names.flat_map(|(k, (kernel, forms))| forms.iter().map(move |form| (k, kernel, form)));
     let contenders = names.zip(runs).map(|((k, kernel, form), run)| Contender {
-        label: (*kernel).to_owned(),
+        curve: (*kernel).to_owned(),
         color: category_color(k),
-        knob: (*form).to_owned(),
+        knob: *form,
         run,
     });
-    let (study, _) =
-        Study::measure("tests", effort.pick(2, 15), contenders.collect(), |wrong: &Wrong| {
-            vec![(WRONG, 1e6 * wrong.answers as f64 / wrong.of as f64)]
-        });
-    let wrong = |kernel: &str, form: &str| study.error(kernel, form, WRONG);
-    let nanoseconds = |kernel: &str, form: &str| {
-        let (seconds, tests) = (study.seconds(kernel, form), study.work(kernel, form) as f64);
-        let each = |seconds: f64| 1e9 * seconds / tests;
+    let study = Study::measure("tests", effort.runs(15), contenders, |wrong: &Wrong| {
+        vec![(WRONG, 1e6 * wrong.answers as f64 / wrong.of as f64)]
+    });
+    let wrong = |kernel: &str, form: &'static str| study.at(kernel, form).error(WRONG);
+    let nanoseconds = |kernel: &str, form: &'static str| {
+        let Trial { seconds, work, .. } = study.at(kernel, form);
+        let each = |seconds: f64| 1e9 * seconds / *work as f64;
         Spread { low: each(seconds.low), mid: each(seconds.mid), high: each(seconds.high) }
     };
 
@@ -114,7 +113,7 @@ pub fn make(effort: Effort) -> Finished {
     let (mut holds, mut costs, mut rates) = (true, Vec::new(), Vec::new());
     let (mut names, mut bars) = (Vec::new(), Vec::new());
     for (k, (kernel, forms)) in KERNELS.into_iter().enumerate() {
-        let median = |form: &str| nanoseconds(kernel, form).mid;
+        let median = |form: &'static str| nanoseconds(kernel, form).mid;
         let (twin, robust, naive) = (forms[0], forms[forms.len() - 1], &forms[..forms.len() - 1]);
         holds &= wrong(kernel, robust) == 0.0 && naive.iter().all(|form| wrong(kernel, form) > 0.0);
         costs.push(format!("{kernel} ×{:.2}", median(robust) / median(twin)));

@@ -324,25 +324,21 @@ pub fn make(effort: Effort) -> Finished {
         .iter()
         .map(|&count| (0..SOUPS).map(|k| View::new(soup(count, k), size)).collect())
         .collect();
-    let contenders = METHODS
-        .iter()
-        .zip(COLORS)
-        .flat_map(|(&(name, method), color)| {
-            soups.iter().map(move |views| Contender {
-                label: name.to_owned(),
-                color: color(),
-                knob: views[0].polygons.len().to_string(),
-                run: Box::new(move || {
-                    let seen: Vec<_> = views.iter().map(method).collect();
-                    let wrong = views.iter().zip(&seen).map(|(view, (faces, _))| view.wrong(faces));
-                    let tests = seen.iter().map(|(_, tests)| tests).sum();
-                    (wrong.sum::<f64>() / f64::from(SOUPS), tests)
-                }),
-            })
+    let contenders = METHODS.iter().zip(COLORS).flat_map(|(&(name, method), color)| {
+        soups.iter().map(move |views| Contender {
+            curve: name.to_owned(),
+            color: color(),
+            knob: views[0].polygons.len(),
+            run: Box::new(move || {
+                let seen: Vec<_> = views.iter().map(method).collect();
+                let wrong = views.iter().zip(&seen).map(|(view, (faces, _))| view.wrong(faces));
+                let tests = seen.iter().map(|(_, tests)| tests).sum();
+                (wrong.sum::<f64>() / f64::from(SOUPS), tests)
+            }),
         })
-        .collect();
-    let (study, _) =
-        Study::measure("tests", 3, contenders, |&wrong: &f64| vec![("wrong pixels (%)", wrong)]);
+    });
+    let judge = |&wrong: &f64| vec![("wrong pixels (%)", wrong)];
+    let study = Study::measure("tests", effort.runs(3), contenders, judge);
     let pixels = size.pixels() as f64 * f64::from(SOUPS);
     let mut growth = Chart::new(Axis::log("squares"), Axis::log("tests per pixel"))
         .title("What it costs: random squares")
@@ -353,9 +349,8 @@ pub fn make(effort: Effort) -> Finished {
         let mut series = Series::new(*name, color());
         for views in &soups {
             let count = views[0].polygons.len();
-            let knob = count.to_string();
-            let tests = study.work(name, &knob);
-            let wrong = study.error(name, &knob, "wrong pixels (%)");
+            let trial = study.at(name, count);
+            let (tests, wrong) = (trial.work, trial.outcome);
             series = series.point(count as f64, tests as f64 / pixels);
             data.push(["soup".into(), (*name).into(), count.into(), tests.into(), wrong.into()]);
             if k < PAINTERS {
@@ -364,7 +359,7 @@ pub fn make(effort: Effort) -> Finished {
                 by_rays = by_rays.max(wrong);
             }
             if k == METHODS.len() - 1 {
-                dearer = dearer.max(tests as f64 / study.work(METHODS[0].0, &knob) as f64);
+                dearer = dearer.max(tests as f64 / study.at(METHODS[0].0, count).work as f64);
             }
         }
         // Both painters test the same triangles.

@@ -76,24 +76,19 @@ pub fn make(effort: Effort) -> Finished {
     let triangles = triangles(&mesh);
     let count = effort.pick(2_000, 20_000);
     let rays: Vec<Vec<Ray>> = (0..AIMS.len()).map(|aim| aimed(&mesh, aim, count)).collect();
-    let contenders = TESTS
-        .iter()
-        .zip(COLORS)
-        .enumerate()
-        .flat_map(|(test, (&name, color))| {
-            let (triangles, rays) = (&triangles, &rays);
-            (0..AIMS.len()).map(move |aim| Contender {
-                label: name.to_owned(),
-                color: color(),
-                knob: AIMS[aim].to_owned(),
-                run: Box::new(move || leaking(test, triangles, &rays[aim])),
-            })
+    let contenders = TESTS.iter().zip(COLORS).enumerate().flat_map(|(test, (&name, color))| {
+        let (triangles, rays) = (&triangles, &rays);
+        (0..AIMS.len()).map(move |aim| Contender {
+            curve: name.to_owned(),
+            color: color(),
+            knob: AIMS[aim],
+            run: Box::new(move || leaking(test, triangles, &rays[aim])),
         })
-        .collect();
-    let (study, _) = Study::measure("tests", 3, contenders, |&leaks: &usize| {
+    });
+    let study = Study::measure("tests", effort.runs(3), contenders, |&leaks: &usize| {
         vec![("leaking rays (%)", 100.0 * leaks as f64 / count as f64)]
     });
-    let leaks = |test: usize| AIMS.map(|aim| study.error(TESTS[test], aim, "leaking rays (%)"));
+    let leaks = |test: usize| AIMS.map(|aim| study.at(TESTS[test], aim).error("leaking rays (%)"));
     let all = [leaks(0), leaks(1), leaks(2)];
     let [moeller_trumbore_leaks, fused_leaks, watertight_leaks] = all;
     let holds = watertight_leaks == [0.0; 3]

@@ -17,6 +17,8 @@ use crate::scenes;
 
 /// Brute force is not asked for more primitives.
 const MOST_LINEAR: usize = 1100;
+/// How often everything is timed.
+const RUNS: usize = 25;
 
 /// Everything that a picture asks its index, in order.
 #[derive(Default)]
@@ -121,76 +123,100 @@ fn picture<R: Recorder>(
         .sum()
 }
 
-pub fn make(effort: Effort) -> Finished {
-    // Brute force gets a smaller picture: the longer a run, the less often it stays undisturbed.
-    let size = |index: &str| match index {
+/// Brute force gets a smaller picture: the longer a run, the less often it stays undisturbed.
+fn size(effort: Effort, index: &str) -> ImageSize {
+    match index {
         "linear" => ImageSize::new(24, 24),
         _ => effort.pick(ImageSize::new(24, 24), ImageSize::new(96, 96)),
-    };
-    let runs = effort.pick(2, 25);
+    }
+}
+
+fn all_scenes(effort: Effort) -> Vec<(&'static str, Scene)> {
     let levels = effort.pick([3, 5], [5, 8]);
-    let generated = |name: &'static str, levels: u32| {
+    let generated = FAMILIES.into_iter().zip(levels).flat_map(|(name, levels)| {
         (1..=levels).map(move |level| (name, scenes::opened(name, Some(&level.to_string())).scene))
-    };
-    let scenes: Vec<(&str, Scene)> = [("whitted", scenes::whitted())]
-        .into_iter()
-        .chain(generated(FAMILIES[0], levels[0]))
-        .chain(generated(FAMILIES[1], levels[1]))
-        .collect();
-    let cases: Vec<Case> = scenes
-        .iter()
-        .flat_map(|(name, scene)| INDEXES.map(|index| (*name, scene, index)))
-        .filter(|(_, scene, index)| *index != "linear" || scene.primitives().len() <= MOST_LINEAR)
-        .map(|(name, scene, index)| Case::new(name, scene, index, size(index)))
-        .collect();
-
-    // All pictures, then all queries: what ran before has emptied the caches for both alike.
-    let contenders = ["whole", "queries"].into_iter().flat_map(|part| {
-        cases.iter().map(move |case| Contender {
-            label: format!("{} {part}", case.label()),
-            color: method_color(case.index_name),
-            knob: case.primitives().to_string(),
-            run: Box::new(move || {
-                let outcome = match part {
-                    "whole" => picture(case.scene, &*case.index, case.size, &mut ()),
-                    _ => case.replay(),
-                };
-                (outcome, case.queries.len() as u64)
-            }),
-        })
     });
-    let (study, _) = Study::measure("rays", runs, contenders.collect(), |_| Vec::new());
-    let share = |case: &Case| {
-        let [queries, whole] = ["queries", "whole"].map(|part| seconds(&study, case, part));
-        100.0 * queries / whole
-    };
+    [("whitted", scenes::whitted())].into_iter().chain(generated).collect()
+}
 
-    let exponents = INDEXES.map(|index| {
-        FAMILIES.map(|family| {
-            let points: Vec<_> = of(&cases, family, index).map(Case::work).collect();
-            fitted_exponent(&points)
-        })
-    });
-    let [linear, tree] = exponents;
-    let holds = linear.iter().all(|p| (0.9..1.1).contains(p)) && tree.iter().all(|p| *p < 0.3);
-    let shares = |index: &str| {
-        span(&mut cases.iter().filter(|case| case.index_name == index).map(&share), 0)
-    };
-    let claim = format!(
-        "With n primitives a ray costs brute force n^{:.2} tests, the hierarchy n^{:.2} (flake) and n^{:.2} \
-         (tetrahedra); intersections take {} % of the time by brute force and {} % with the hierarchy, where \
-         Whitted measured 75 to 95 % in 1980.",
-        linear[0],
-        tree[0],
-        tree[1],
-        shares(INDEXES[0]),
-        shares(INDEXES[1]),
-    );
+/// What was measured.
+struct Measured<'s> {
+    cases: Vec<Case<'s>>,
+    study: Study<usize, f64>,
+}
 
-    let bars = |index: &str, title: &str| {
-        let cases: Vec<&Case> = cases.iter().filter(|case| case.index_name == index).collect();
+impl<'s> Measured<'s> {
+    fn new(effort: Effort, scenes: &'s [(&'static str, Scene)]) -> Self {
+        let cases: Vec<Case> = scenes
+            .iter()
+            .flat_map(|(name, scene)| INDEXES.map(|index| (*name, scene, index)))
+            .filter(|(_, scene, index)| {
+                *index != "linear" || scene.primitives().len() <= MOST_LINEAR
+            })
+            .map(|(name, scene, index)| Case::new(name, scene, index, size(effort, index)))
+            .collect();
+        // All pictures, then all queries: what ran before has emptied the caches for both alike.
+        let contenders = ["whole", "queries"].into_iter().flat_map(|part| {
+            cases.iter().map(move |case| Contender {
+                curve: format!("{} {part}", case.label()),
+                color: method_color(case.index_name),
+                knob: case.primitives(),
+                run: Box::new(move || {
+                    let outcome = match part {
+                        "whole" => picture(case.scene, &*case.index, case.size, &mut ()),
+                        _ => case.replay(),
+                    };
+                    (outcome, case.queries.len() as u64)
+                }),
+            })
+        });
+        let study = Study::measure("rays", effort.runs(RUNS), contenders, |_| Vec::new());
+        Self { cases, study }
+    }
+
+    /// The least time of a case's runs: what disturbs a run only makes it longer.
+    fn seconds(&self, case: &Case, part: &str) -> f64 {
+        self.study.at(&format!("{} {part}", case.label()), case.primitives()).seconds.low
+    }
+
+    /// The part of a case's time that its queries take, in percent.
+    fn share(&self, case: &Case) -> f64 {
+        100.0 * self.seconds(case, "queries") / self.seconds(case, "whole")
+    }
+
+    /// The cases of an index.
+    fn by(&self, index: &str) -> Vec<&Case<'s>> {
+        self.cases.iter().filter(|case| case.index_name == index).collect()
+    }
+
+    /// The cases of an index in a family of scenes.
+    fn of(&self, family: &str, index: &str) -> Vec<&Case<'s>> {
+        self.by(index).into_iter().filter(|case| case.scene_name == family).collect()
+    }
+
+    fn claim(&self) -> (String, bool) {
+        let [linear, tree] = INDEXES.map(|index| {
+            FAMILIES.map(|family| {
+                let points = self.of(family, index).into_iter().map(Case::work);
+                fitted_exponent(&points.collect::<Vec<_>>())
+            })
+        });
+        let holds = linear.iter().all(|p| (0.9..1.1).contains(p)) && tree.iter().all(|p| *p < 0.3);
+        let [by_force, by_tree] = INDEXES
+            .map(|index| span(&mut self.by(index).into_iter().map(|case| self.share(case)), 0));
+        let claim = format!(
+            "With n primitives a ray costs brute force n^{:.2} tests, the hierarchy n^{:.2} (flake) and n^{:.2} \
+             (tetrahedra); intersections take {by_force} % of the time by brute force and {by_tree} % with the \
+             hierarchy, where Whitted measured 75 to 95 % in 1980.",
+            linear[0], tree[0], tree[1],
+        );
+        (claim, holds)
+    }
+
+    fn bars(&self, index: &str, title: &str) -> BarChart {
+        let cases = self.by(index);
         let names = cases.iter().map(|case| format!("{}, {}", case.scene_name, case.primitives()));
-        let shares: Vec<f64> = cases.iter().map(|case| share(case)).collect();
+        let shares: Vec<f64> = cases.iter().map(|case| self.share(case)).collect();
         // A share measured above 100 % is printed as measured and leaves nothing to draw.
         let rest: Vec<f64> = shares.iter().map(|share| (100.0 - share).max(0.0)).collect();
         let rounded: Vec<f64> = shares.iter().map(|share| (10.0 * share).round() / 10.0).collect();
@@ -200,82 +226,95 @@ pub fn make(effort: Effort) -> Finished {
             .first_printed()
             .series("intersections", category_color(0), rounded)
             .series("the rest", category_color(1), rest)
-    };
-    let mut tests = Chart::new(Axis::log("primitives, n"), Axis::log("tests per ray"))
-        .title("Counted work")
-        .slope(1.0, "slope 1");
-    let mut times = Chart::new(Axis::log("primitives, n"), Axis::log("nanoseconds per ray"))
-        .title("Time (one thread)")
-        .slope(1.0, "slope 1");
-    for (index, name) in INDEXES.into_iter().zip(["brute force", "hierarchy"]) {
-        for family in FAMILIES {
-            let cases: Vec<&Case> = of(&cases, family, index).collect();
-            let styled = |label: String, color| {
-                let series = Series::new(label, color);
-                if family == FAMILIES[0] { series } else { series.dashed() }
-            };
-            let points = cases.iter().map(|case| case.work());
-            tests = tests
-                .series(styled(format!("{name}, {family}"), method_color(index)).points(points));
-            let per_ray = |case: &Case, seconds: f64| {
-                (case.primitives() as f64, 1e9 * seconds / case.queries.len() as f64)
-            };
-            let queries = cases.iter().map(|case| per_ray(case, seconds(&study, case, "queries")));
-            times = times
-                .series(styled(format!("{name}, {family}"), method_color(index)).points(queries));
-            if index == INDEXES[1] {
-                let rest = cases.iter().map(|case| {
-                    let rest = seconds(&study, case, "whole") - seconds(&study, case, "queries");
-                    per_ray(case, rest)
-                });
-                let label = format!("the rest, {family}");
-                times = times.series(styled(label, category_color(1)).points(rest));
-            }
-        }
     }
 
-    let mut data = Table::new([
-        "scene",
-        "primitives",
-        "index",
-        "rays",
-        "rays_per_pixel",
-        "box_tests",
-        "primitive_tests",
-        "seconds_whole",
-        "seconds_queries",
-        "share_percent",
-    ]);
-    for case in &cases {
-        data.push([
-            case.scene_name.into(),
-            case.primitives().into(),
-            case.index_name.into(),
-            case.queries.len().into(),
-            case.rays_per_pixel().into(),
-            case.counts.boxes.into(),
-            case.counts.primitives.into(),
-            seconds(&study, case, "whole").into(),
-            seconds(&study, case, "queries").into(),
-            share(case).into(),
-        ]);
+    /// Tests per ray, and nanoseconds per ray.
+    fn growth(&self) -> [Chart; 2] {
+        let chart = |unit, title| {
+            Chart::new(Axis::log("primitives, n"), Axis::log(unit))
+                .title(title)
+                .slope(1.0, "slope 1")
+        };
+        let mut tests = chart("tests per ray", "Counted work");
+        let mut times = chart("nanoseconds per ray", "Time (one thread)");
+        for (index, name) in INDEXES.into_iter().zip(["brute force", "hierarchy"]) {
+            for family in FAMILIES {
+                let cases = self.of(family, index);
+                let styled = |label: String, color| {
+                    let series = Series::new(label, color);
+                    if family == FAMILIES[0] { series } else { series.dashed() }
+                };
+                let named = || styled(format!("{name}, {family}"), method_color(index));
+                tests = tests.series(named().points(cases.iter().map(|case| case.work())));
+                let per_ray = |case: &Case, seconds: f64| {
+                    (case.primitives() as f64, 1e9 * seconds / case.queries.len() as f64)
+                };
+                let queries = cases.iter().map(|case| per_ray(case, self.seconds(case, "queries")));
+                times = times.series(named().points(queries));
+                if index == INDEXES[1] {
+                    let rest = cases.iter().map(|case| {
+                        per_ray(case, self.seconds(case, "whole") - self.seconds(case, "queries"))
+                    });
+                    let label = format!("the rest, {family}");
+                    times = times.series(styled(label, category_color(1)).points(rest));
+                }
+            }
+        }
+        [tests, times]
     }
+
+    fn table(&self) -> Table {
+        let mut data = Table::new([
+            "scene",
+            "primitives",
+            "index",
+            "rays",
+            "rays_per_pixel",
+            "box_tests",
+            "primitive_tests",
+            "seconds_whole",
+            "seconds_queries",
+            "share_percent",
+        ]);
+        for case in &self.cases {
+            data.push([
+                case.scene_name.into(),
+                case.primitives().into(),
+                case.index_name.into(),
+                case.queries.len().into(),
+                case.rays_per_pixel().into(),
+                case.counts.boxes.into(),
+                case.counts.primitives.into(),
+                self.seconds(case, "whole").into(),
+                self.seconds(case, "queries").into(),
+                self.share(case).into(),
+            ]);
+        }
+        data
+    }
+}
+
+pub fn make(effort: Effort) -> Finished {
+    let scenes = all_scenes(effort);
+    let measured = Measured::new(effort, &scenes);
+    let (claim, holds) = measured.claim();
+    let [tests, times] = measured.growth();
     let plate = Plate::new("1.13", "Where the time goes", claim, holds)
         .panel(
             Row::new()
-                .panel(1.0, bars(INDEXES[0], "Brute force"))
-                .panel(1.0, bars(INDEXES[1], "Hierarchy (obvhs-bvh2)")),
+                .panel(1.0, measured.bars(INDEXES[0], "Brute force"))
+                .panel(1.0, measured.bars(INDEXES[1], "Hierarchy (obvhs-bvh2)")),
         )
         .panel(Row::new().panel(1.0, tests).panel(1.0, times))
         .note("« Temps de calcul important »", format!(
             "intersections and number of rays: {} rays per pixel. The exponents are fitted to the tests of \
              primitives and boxes by all rays of a picture",
-            span(&mut cases.iter().map(Case::rays_per_pixel), 1)
+            span(&mut measured.cases.iter().map(Case::rays_per_pixel), 1)
         ))
         .note("Method", format!(
             "algo:lr to depth 5, with shadow rays. All rays of a picture are recorded; then all pictures and, \
-             after them, the bare queries of their rays are timed, {runs} times in turn, and the share is that \
-             of the least times"
+             after them, the bare queries of their rays are timed, {} times in turn, and the share is that \
+             of the least times", effort.runs(RUNS)
         ))
         .note("Limits", "an estimate of this code on this machine: the bare queries read their rays from memory, \
              and no shading comes between them. Pictures and queries start with equally cold caches, so that \
@@ -283,16 +322,11 @@ pub fn make(effort: Effort) -> Finished {
              is not counted")
         .note("Settings", format!(
             "{} (brute force, up to {MOST_LINEAR} primitives) and {}, 1 sample per pixel",
-            size("linear"), size("obvhs-bvh2")
+            size(effort, "linear"), size(effort, "obvhs-bvh2")
         ))
         .note("Reference", "closed form for brute force: a ray tests all n primitives, a shadow ray that is \
              stopped at least one");
-    Finished { plate, data }
-}
-
-/// The least time of a case's runs: what disturbs a run only makes it longer.
-fn seconds(study: &Study, case: &Case, part: &str) -> f64 {
-    study.seconds(&format!("{} {part}", case.label()), &case.primitives().to_string()).low
+    Finished { plate, data: measured.table() }
 }
 
 /// From the least to the greatest.
@@ -300,13 +334,4 @@ fn span(values: &mut dyn Iterator<Item = f64>, places: usize) -> String {
     let (low, high) = values
         .fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
     format!("{low:.places$} to {high:.places$}")
-}
-
-/// The cases of one scene and one index.
-fn of<'c, 's>(
-    cases: &'c [Case<'s>],
-    family: &'c str,
-    index: &'c str,
-) -> impl Iterator<Item = &'c Case<'s>> {
-    cases.iter().filter(move |case| case.scene_name == family && case.index_name == index)
 }
