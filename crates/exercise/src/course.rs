@@ -1,6 +1,6 @@
 use lancer_core::image::Image;
 
-use crate::Mismatch;
+use crate::Verdict;
 use crate::verify::Verified;
 
 /// A chapter's exercises, in the order of its lesson.
@@ -80,9 +80,6 @@ pub struct Check<S: 'static> {
     /// Judges; of several counter-examples the simplest is to be reported.
     pub run: fn(&S) -> Verdict,
 }
-
-/// What a check says: the counter-example, if there is one.
-pub type Verdict = Result<(), Mismatch>;
 
 /// Something plausible that makes one function wrong.
 pub struct Slip<S: 'static> {

@@ -17,8 +17,8 @@ mod runner;
 mod show;
 mod verify;
 
-pub use course::{Card, Check, Course, Exercise, Shelf, Slip, Solution, Verdict};
+pub use course::{Card, Check, Course, Exercise, Shelf, Slip, Solution};
 pub use judge::{Failure, Outcome, Report, State};
-pub use mismatch::{Mismatch, Shown, same, within};
+pub use mismatch::{Mismatch, Shown, Verdict, ensure, same, within};
 pub use runner::run;
 pub use verify::{Proof, Verified, passed_by_stub};

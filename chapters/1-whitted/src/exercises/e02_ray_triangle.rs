@@ -9,7 +9,7 @@ use lancer_core::image::{Image, ImageSize};
 use lancer_core::sampling::Uniform;
 use lancer_core::scene::Camera;
 use lancer_exercise::{
-    Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, same, slips, within,
+    Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, ensure, same, slips, within,
 };
 
 use super::reference::ray_triangle;
@@ -187,14 +187,13 @@ fn misses(subject: &Subject, what: &str, corners: [DVec3; 3], ray: &Ray) -> Verd
 
 /// In the plane z = 0.
 const FLAT: [DVec3; 3] = [DVec3::ZERO, DVec3::new(8.0, 0.0, 0.0), DVec3::new(0.0, 8.0, 0.0)];
+/// (1, 2, 0) = 5/8 a + 1/8 b + 2/8 c.
+const WEIGHTS: DVec3 = DVec3::new(0.625, 0.125, 0.25);
 /// A third, a half and a sixth of these corners are (2, 2.5, 2) together: [`INSIDE`].
 const SLANTED: [DVec3; 3] =
     [DVec3::new(3.0, 6.0, -6.0), DVec3::new(1.0, -1.0, 8.0), DVec3::new(3.0, 6.0, 0.0)];
 const INSIDE: DVec3 = DVec3::new(2.0, 2.5, 2.0);
-
-fn weights() -> DVec3 {
-    DVec3::new(1.0 / 3.0, 1.0 / 2.0, 1.0 / 6.0)
-}
+const SHARES: DVec3 = DVec3::new(1.0 / 3.0, 1.0 / 2.0, 1.0 / 6.0);
 
 /// A ray along −z through (x, y) of [`FLAT`], which it meets at t = 3.
 fn down(x: f64, y: f64) -> Ray {
@@ -202,14 +201,7 @@ fn down(x: f64, y: f64) -> Ray {
 }
 
 fn straight_down(subject: &Subject) -> Verdict {
-    // (1, 2) = 5/8 a + 1/8 b + 2/8 c.
-    meets(
-        subject,
-        "aimed at the inside: ",
-        FLAT,
-        &down(1.0, 2.0),
-        (3.0, DVec3::new(0.625, 0.125, 0.25)),
-    )
+    meets(subject, "aimed at the inside: ", FLAT, &down(1.0, 2.0), (3.0, WEIGHTS))
 }
 
 /// The longest axis of the direction is x, y and z in turn, and points both ways.
@@ -219,19 +211,18 @@ fn in_space(subject: &Subject) -> Verdict {
     for direction in directions {
         for turn in turns {
             let ray = Ray::new(turn(INSIDE - 2.0 * direction), turn(direction));
-            meets(subject, "aimed at the inside: ", SLANTED.map(turn), &ray, (2.0, weights()))?;
+            meets(subject, "aimed at the inside: ", SLANTED.map(turn), &ray, (2.0, SHARES))?;
         }
     }
     Ok(())
 }
 
 fn other_side(subject: &Subject) -> Verdict {
-    let weights = DVec3::new(0.625, 0.125, 0.25);
     let up = Ray::new(DVec3::new(1.0, 2.0, -3.0), DVec3::Z);
-    meets(subject, "from below: ", FLAT, &up, (3.0, weights))?;
+    meets(subject, "from below: ", FLAT, &up, (3.0, WEIGHTS))?;
     let [a, b, c] = FLAT;
     let what = "the corners in the other order of rotation: ";
-    meets(subject, what, [a, c, b], &down(1.0, 2.0), (3.0, weights.xzy()))
+    meets(subject, what, [a, c, b], &down(1.0, 2.0), (3.0, WEIGHTS.xzy()))
 }
 
 fn beside(subject: &Subject) -> Verdict {
@@ -273,8 +264,7 @@ fn exact_borders(subject: &Subject) -> Verdict {
 /// [`FLAT`] 10⁻¹² times as large: twice its area is 6.4·10⁻²³.
 fn small(subject: &Subject) -> Verdict {
     let ray = Ray::new(DVec3::new(1e-12, 2e-12, 3.0), DVec3::NEG_Z);
-    let wanted = (3.0, DVec3::new(0.625, 0.125, 0.25));
-    meets(subject, "8e-12 wide: ", FLAT.map(|corner| 1e-12 * corner), &ray, wanted)
+    meets(subject, "8e-12 wide: ", FLAT.map(|corner| 1e-12 * corner), &ray, (3.0, WEIGHTS))
 }
 
 /// Corners and rays are integer combinations of two integer vectors, so that they lie in one plane
@@ -294,14 +284,15 @@ fn in_plane(subject: &Subject) -> Verdict {
         let passes = sides.iter().all(|&side| side > 0.0) || sides.iter().all(|&side| side < 0.0);
         let in_space = |v: DVec2| v.x * p + v.y * q;
         let ray = Ray::new(in_space(origin), in_space(direction));
-        if passes && (subject.ray_triangle)(corners.map(in_space), &ray).is_some() {
-            // Which one it is depends on the order of rounding; that one is does not.
-            return Err(Mismatch::new(
+        let is_met = (subject.ray_triangle)(corners.map(in_space), &ray).is_some();
+        // Which one it is depends on the order of rounding; that one is does not.
+        ensure(!(passes && is_met), || {
+            Mismatch::new(
                 "20000 triangles and rays in their planes, which run past them",
                 "some are met: U, V and W are rounding noise, and their signs agree by chance",
                 "None for each",
-            ));
-        }
+            )
+        })?;
     }
     Ok(())
 }
@@ -328,18 +319,15 @@ fn closed(subject: &Subject, aim: usize, at: &str) -> Verdict {
     let met = |ray: &Ray| {
         (0..mesh.triangles.len()).any(|k| (subject.ray_triangle)(mesh.corners(k), ray).is_some())
     };
-    if aimed(&mesh, aim, 4000).iter().all(met) {
-        return Ok(());
-    }
-    // How many depends on the order of rounding, and so does which.
-    Err(Mismatch::new(
-        format!(
-            "4000 rays from inside a closed mesh of {} triangles, aimed at {at}",
-            mesh.triangles.len()
-        ),
-        "some meet no triangle at all: they slip between neighbours",
-        "each meets at least one",
-    ))
+    let triangles = mesh.triangles.len();
+    // How many slip through depends on the order of rounding, and so does which.
+    ensure(aimed(&mesh, aim, 4000).iter().all(met), || {
+        Mismatch::new(
+            format!("4000 rays from inside a closed mesh of {triangles} triangles, aimed at {at}"),
+            "some meet no triangle at all: they slip between neighbours",
+            "each meets at least one",
+        )
+    })
 }
 
 /// A ball of 80 triangles in the colours of their corners' weights, darker the farther away it is; below it

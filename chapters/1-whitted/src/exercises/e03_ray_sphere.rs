@@ -5,7 +5,9 @@ use lancer_core::Rgb;
 use lancer_core::geometry::{Ray, Sphere};
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::sampling::Uniform;
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, slips, within};
+use lancer_exercise::{
+    Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, ensure, slips, within,
+};
 
 use super::reference::ray_sphere;
 use super::{Subject, painted};
@@ -166,13 +168,14 @@ fn is_noise(sphere: &Sphere, ray: &Ray) -> bool {
 
 type Scene = (Sphere, Ray);
 
+fn case(what: &str, Sphere { center, radius }: &Sphere, ray: &Ray) -> String {
+    let (center, radius) = (center.shown(), radius.shown());
+    format!("{what}: sphere around {center} of radius {radius}; ray: {}", ray.shown())
+}
+
 fn compare(subject: &Subject, what: &str, (sphere, ray): Scene, wanted: Option<f64>) -> Verdict {
-    let case = || {
-        let Sphere { center, radius } = sphere;
-        let (center, radius) = (center.shown(), radius.shown());
-        format!("{what}: sphere around {center} of radius {radius}; ray: {}", ray.shown())
-    };
-    within(1e-12, case, &(subject.ray_sphere)(&sphere, &ray), &wanted)
+    let got = (subject.ray_sphere)(&sphere, &ray);
+    within(1e-12, || case(what, &sphere, &ray), &got, &wanted)
 }
 
 /// A ray from the origin along D = (2, 3, 6), of length 7, and a sphere of radius 35 whose centre is
@@ -230,14 +233,10 @@ fn precise(
         let t = (subject.ray_sphere)(&sphere, &ray);
         t.is_some_and(|t| (t / exact - 1.0).abs() < 1e-13)
     };
-    if cases.all(is_right) {
-        return Ok(());
-    }
-    Err(Mismatch::new(
-        what,
-        "for some of them t is off by more than a part in 10¹³, or the sphere is lost",
-        "all digits of t, but for the last rounding",
-    ))
+    ensure(cases.all(is_right), || {
+        let got = "for some of them t is off by more than a part in 10¹³, or the sphere is lost";
+        Mismatch::new(what, got, "all digits of t, but for the last rounding")
+    })
 }
 
 fn far(subject: &Subject) -> Verdict {
@@ -264,11 +263,7 @@ fn tiny(subject: &Subject) -> Verdict {
     let size = 0.5_f64.powi(30);
     let sphere = Sphere { center: size * sphere.center, radius: size * sphere.radius };
     let got = (subject.ray_sphere)(&sphere, &ray).map(|t| t / size);
-    let case = || {
-        let (center, radius) = (sphere.center.shown(), sphere.radius.shown());
-        format!("t · 2³⁰: sphere around {center} of radius {radius}; ray: {}", ray.shown())
-    };
-    within(1e-12, case, &got, &Some(6.0))
+    within(1e-12, || case("t · 2³⁰", &sphere, &ray), &got, &Some(6.0))
 }
 
 /// Points of a sphere as they are rounded, and a direction for each: outwards, and back across the sphere.

@@ -214,23 +214,15 @@ fn from_inside(subject: &Subject) -> Verdict {
 const AWAY: f64 = 1e6;
 
 fn far_away(subject: &Subject) -> Verdict {
-    shadows(
-        subject,
-        1e3,
-        "a floor of 2000 × 1600 under six sheets, a million times its size from the origin",
-    )
+    shadows(subject, 1e3, "2000 × 1600")
 }
 
 fn tiny(subject: &Subject) -> Verdict {
-    shadows(
-        subject,
-        1e-3,
-        "a floor of 0.0022 × 0.0016 under six sheets, a million times its size from the origin",
-    )
+    shadows(subject, 1e-3, "0.0022 × 0.0016")
 }
 
 /// Whether all points of the floor are dark and lit as plane geometry has it.
-fn shadows(subject: &Subject, scale: f64, case: &str) -> Verdict {
+fn shadows(subject: &Subject, scale: f64, size: &str) -> Verdict {
     let site = Site::new(scale, AWAY, ImageSize::new(48, 32));
     let got = match site.wrong(&site.dark(subject.shadow_ray)) {
         [0, 0] => return Ok(()),
@@ -240,6 +232,8 @@ fn shadows(subject: &Subject, scale: f64, case: &str) -> Verdict {
             "points are dark though the lamp shines there (acne), and others lit though a sheet stands before it (leaks)"
         }
     };
+    let case =
+        format!("a floor of {size} under six sheets, a million times its size from the origin");
     Err(Mismatch::new(case, got, "the sheets' shadows, and nothing else"))
 }
 

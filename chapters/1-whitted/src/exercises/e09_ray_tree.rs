@@ -5,7 +5,9 @@ use lancer_core::Rgb;
 use lancer_core::geometry::Ray;
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::scene::Scene;
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, slips, within};
+use lancer_exercise::{
+    Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, ensure, slips, within,
+};
 use lancer_whitted::{RayCounts, RayKind};
 
 use super::reference::ray_tree;
@@ -119,10 +121,7 @@ fn compare_counts(
     wanted: &RayCounts,
 ) -> Verdict {
     let got = (subject.count_rays)(tree);
-    if got == *wanted {
-        return Ok(());
-    }
-    Err(Mismatch::new(case, counts_shown(&got), counts_shown(wanted)))
+    ensure(got == *wanted, || Mismatch::new(case, counts_shown(&got), counts_shown(wanted)))
 }
 
 /// The tree of a ray in a scene, given as a text and in words.

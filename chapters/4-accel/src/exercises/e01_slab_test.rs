@@ -7,7 +7,9 @@ use lancer_core::Rgb;
 use lancer_core::geometry::{Bounds3, Interval, Ray};
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::sampling::Uniform;
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, slips, within};
+use lancer_exercise::{
+    Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, ensure, slips, within,
+};
 
 use super::Subject;
 use super::reference::slab_test;
@@ -194,10 +196,10 @@ fn corners(subject: &Subject) -> Verdict {
             let met = (subject.slab_test)(&bounds, &ray, POSITIVE);
             // Through a corner into the box, the ray enters there; along its outside it touches there.
             let wanted = slab_test(&bounds, &ray, POSITIVE);
-            if met.is_none() {
+            ensure(met.is_some(), || {
                 let text = case(&bounds, &ray, POSITIVE) + " (it passes through a corner)";
-                return Err(Mismatch::new(text, "None", wanted.shown()));
-            }
+                Mismatch::new(text, "None", wanted.shown())
+            })?;
         }
     }
     Ok(())

@@ -8,7 +8,9 @@ use lancer_core::image::{Image, ImageSize};
 use lancer_core::intersector::{Hit, Intersector, LinearScan, TestCounts};
 use lancer_core::sampling::Uniform;
 use lancer_core::scene::{MaterialId, Mesh, Scene, SphereObject};
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, same, slips};
+use lancer_exercise::{
+    Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, ensure, same, slips,
+};
 
 use super::reference::visit;
 use super::walk::Tree;
@@ -190,11 +192,10 @@ fn closest(subject: &Subject) -> Verdict {
 }
 
 fn no_more(what: &str, ray: &Ray, got: u64, fair: u64) -> Verdict {
-    if got <= fair {
-        return Ok(());
-    }
-    let case = format!("60 balls; {}: {what}", ray.shown());
-    Err(Mismatch::new(case, got.to_string(), format!("no more than {fair}")))
+    ensure(got <= fair, || {
+        let case = format!("60 balls; {}: {what}", ray.shown());
+        Mismatch::new(case, got.to_string(), format!("no more than {fair}"))
+    })
 }
 
 fn primitives(subject: &Subject) -> Verdict {

@@ -5,7 +5,7 @@ use lancer_accel::Sides;
 use lancer_core::Rgb;
 use lancer_core::geometry::Interval;
 use lancer_core::image::{Image, ImageSize};
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, slips};
+use lancer_exercise::{Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, ensure, slips};
 
 use super::Subject;
 use super::reference::plane_sides;
@@ -128,19 +128,13 @@ fn compare(subject: &Subject, [split, origin, direction]: [f64; 3], wanted: Side
         }
         _ => got == wanted,
     };
-    if is_right {
-        return Ok(());
-    }
     // −0 is a direction of its own.
     let sign = if direction == 0.0 && direction.is_sign_negative() { "−" } else { "" };
-    let case = format!(
-        "plane at {}, origin {}, direction {sign}{}, t from {}",
-        split.shown(),
-        origin.shown(),
-        direction.shown(),
-        part(INSIDE)
-    );
-    Err(Mismatch::new(case, text(got), text(wanted)))
+    let [split, origin, direction] = [split, origin, direction].map(|x| x.shown());
+    let inside = part(INSIDE);
+    let case =
+        format!("plane at {split}, origin {origin}, direction {sign}{direction}, t from {inside}");
+    ensure(is_right, || Mismatch::new(case, text(got), text(wanted)))
 }
 
 fn both(subject: &Subject) -> Verdict {

@@ -7,7 +7,7 @@ use lancer_core::Rgb;
 use lancer_core::geometry::{Bounds3, Interval, Shear, intersect_triangle};
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::scene::{PrimitiveId, Scene};
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Solution, Verdict, slips};
+use lancer_exercise::{Card, Check, Exercise, Mismatch, Solution, Verdict, ensure, slips};
 
 use super::reference::search_cells;
 use super::{Met, Subject, Test, color_of};
@@ -138,21 +138,14 @@ fn compare(
         Some(t) => format!("{id} is met at {t}"),
         None => format!("{id} is missed"),
     });
-    let case = format!(
-        "cells {}; {}",
-        cells.collect::<Vec<_>>().join(", "),
-        hits.collect::<Vec<_>>().join(", ")
-    );
-    if got != wanted {
-        return Err(Mismatch::new(case, format!("{got:?}"), format!("{wanted:?}")));
-    }
+    let [cells, hits] = [cells.collect::<Vec<_>>(), hits.collect()].map(|list| list.join(", "));
+    let case = format!("cells {cells}; {hits}");
+    ensure(got == wanted, || Mismatch::new(&case, format!("{got:?}"), format!("{wanted:?}")))?;
     tested.sort_unstable();
-    match wanted_tests {
-        Some(wanted) if tested != wanted => {
-            Err(Mismatch::new(case, format!("tests of {tested:?}"), format!("tests of {wanted:?}")))
-        }
-        _ => Ok(()),
-    }
+    wanted_tests.map_or(Ok(()), |wanted| {
+        let [got, wanted] = [&*tested, wanted].map(|ids| format!("tests of {ids:?}"));
+        ensure(got == wanted, || Mismatch::new(case, got, wanted))
+    })
 }
 
 fn one_cell(subject: &Subject) -> Verdict {

@@ -6,7 +6,7 @@ use lancer_core::Rgb;
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::sampling::Uniform;
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, slips};
+use lancer_exercise::{Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, ensure, slips};
 
 use super::reference::{eight_boxes, near_to_far};
 use super::{Lanes, PreparedRay, Subject};
@@ -132,6 +132,12 @@ fn rows(boxes: &Boxes) -> [Lanes; 6] {
     })
 }
 
+/// The way from a point into the octant of a lane, a bit for each axis.
+fn octant(lane: usize, size: f64) -> DVec3 {
+    let side = |axis: usize| if lane >> axis & 1 == 1 { size } else { -size };
+    DVec3::new(side(0), side(1), side(2))
+}
+
 fn bounds(min: [f64; 3], max: [f64; 3]) -> Option<Bounds3> {
     Some(Bounds3 { min: min.into(), max: max.into() })
 }
@@ -147,7 +153,7 @@ fn case(lane: usize, boxes: &Boxes, ray: &Ray, max: f32) -> String {
 fn judge_met(case: impl Fn() -> String, met: u32, lane: usize, wanted: bool) -> Verdict {
     let shown = |bit| if bit { "met" } else { "not met" };
     let got = met >> lane & 1 == 1;
-    if got == wanted { Ok(()) } else { Err(Mismatch::new(case(), shown(got), shown(wanted))) }
+    ensure(got == wanted, || Mismatch::new(case(), shown(got), shown(wanted)))
 }
 
 /// The pad of no ray of the checks moves a t by more than this.
@@ -305,8 +311,7 @@ fn corner(subject: &Subject) -> Verdict {
         }
         let ray = Ray::new(point - t * direction, direction);
         let boxes: Boxes = std::array::from_fn(|lane| {
-            let side = |axis: usize| if lane >> axis & 1 == 1 { 0.25 } else { -0.25 };
-            let far = point + DVec3::new(side(0), side(1), side(2));
+            let far = point + octant(lane, 0.25);
             Some(Bounds3 { min: point.min(far), max: point.max(far) })
         });
         let max = t as f32;
@@ -365,11 +370,8 @@ fn one_by_one(subject: &Subject) -> Verdict {
 
 fn compare_order(subject: &Subject, near: Lanes, met: u32, wanted: &[usize]) -> Verdict {
     let got = (subject.near_to_far)(&near, met);
-    if got == wanted {
-        return Ok(());
-    }
     let case = format!("near {near:?}, met {met:#010b}: the order of the lanes");
-    Err(Mismatch::new(case, format!("{got:?}"), format!("{wanted:?}")))
+    ensure(got == wanted, || Mismatch::new(case, format!("{got:?}"), format!("{wanted:?}")))
 }
 
 const NEAR: Lanes = [0.5, 0.125, 9.0, 0.25, 7.0, 0.0, 8.0, 4.0];
@@ -400,10 +402,6 @@ impl Nodes {
     /// Boxes of many sizes in a grid of 4³ places, one in four of which is empty.
     fn new() -> Self {
         let mut random = Uniform::new(50, 0, 0);
-        let octant = |lane: usize, size: f64| {
-            let side = |axis: usize| if lane >> axis & 1 == 1 { size } else { -size };
-            DVec3::new(side(0), side(1), side(2))
-        };
         let boxes: [Boxes; 8] = std::array::from_fn(|outer| {
             std::array::from_fn(|inner| {
                 let center = octant(outer, 0.5) + octant(inner, 0.25);
