@@ -126,9 +126,9 @@ impl<S> Slip<S> {
 /// assert_eq!((SLIPS[1].made_in(right).mean)(3.0, 4.0), 7.0);
 /// ```
 ///
-/// Above its slips stands the function that is wrong, which is a field of the subject, with names for its arguments.
-/// A name in the answer is that of the reference's function, which is imported, so that a slip shows what differs.
-/// Rustfmt leaves these lines alone: an answer of more than a few is a function further down.
+/// Above its slips stands the function that is wrong, a field of the subject, with names for its arguments. Where an
+/// answer calls a function of that name, it is the reference's: the slip shows what differs from it. Rustfmt leaves
+/// these lines alone: an answer of more than a few is a function further down.
 #[macro_export]
 macro_rules! slips {
     (@ ($($argument:ident),+) $answer:expr) => {

@@ -2,9 +2,9 @@
 //!
 //! A chapter's *subject* is a struct of plain function pointers, one for each function to be written. Its
 //! [`Course`] holds the reference (the chapter's own code) and, for each [`Exercise`], the pristine stub,
-//! the [`Check`]s, and [`Slip`]s, with which the reference is wrong in one plausible way. They prove that the checks
-//! can fail ([`Course::prove_checks`]), and whose answer behaves as the reference with a slip does is told which one
-//! that is.
+//! the [`Check`]s, and [`Slip`]s: what makes the reference wrong in one plausible way. Slips prove that the checks
+//! can fail ([`Course::prove_checks`]), and when a student's answer behaves as the reference with a slip does, its
+//! words say which one it is.
 //!
 //! The student's files live in a small workspace of their own, made by `cargo xtask exercise`; its program
 //! puts their functions into a subject and calls [`run`].
