@@ -4,6 +4,8 @@ use chapter_1::exercises::prelude::*;
 
 /// What a surface sends to the eye of one lamp's light.
 ///
+/// What comes in are the fields of `lit`:
+///
 /// - `intensity`: Iᵢ of the lamp, per channel.
 /// - `visible`: vis(i), whether the shadow ray reaches the lamp.
 /// - `distance`: dᵢ from the surface to the lamp, in scene units.
@@ -13,14 +15,7 @@ use chapter_1::exercises::prelude::*;
 /// - `to_eye`: V, unit, from the surface to the eye.
 ///
 /// The slide's R is the mirror direction of the light, unit, away from the surface.
-pub fn local_light(
-    intensity: Rgb,
-    visible: bool,
-    distance: f64,
-    reflectance: &Reflectance,
-    n: DVec3,
-    to_light: DVec3,
-    to_eye: DVec3,
-) -> Rgb {
+pub fn local_light(lit: &Lit) -> Rgb {
+    let Lit { intensity, visible, distance, reflectance, n, to_light, to_eye } = *lit;
     todo!("E1.5: one term of eq:local")
 }

@@ -28,7 +28,7 @@ use crate::yours::{local_light, reflected_ray, refracted_ray, shadow_ray};
 ///   `surface.optical_normal(ray.direction)`: N for the mirror ray and the refracted one.
 /// - `surface.spawn(direction)`: the ray that leaves the surface.
 /// - `stage.lamps`: each `lamp` has a `position` and an `intensity_towards(to_light)`, L being unit.
-///   `stage.is_lit(&shadow_ray)`: vis(i).
+///   `stage.is_lit(&shadow_ray)`: vis(i). The fields of `Lit` are named in the stub of `local_light`.
 pub fn lr(stage: &Stage, ray: &Ray, depth: u32) -> Rgb {
     todo!("E1.8: follow the ray")
 }

@@ -1,6 +1,6 @@
 use lancer_core::image::Image;
 
-use crate::Mismatch;
+use crate::Verdict;
 use crate::verify::Verified;
 
 /// A chapter's exercises, in the order of its lesson.
@@ -19,8 +19,8 @@ pub struct Exercise<S: 'static> {
     pub card: Card,
     /// The checks, the easiest first.
     pub checks: &'static [Check<S>],
-    /// Plausible mistakes.
-    pub mutants: &'static [Mutant<S>],
+    /// What a beginner gets wrong, written with [`slips!`](crate::slips).
+    pub slips: &'static [Slip<S>],
     /// A picture drawn by the subject's functions.
     pub draw: fn(&S) -> Image,
     /// What happened at one pixel of that picture, for whoever looks for the first wrong one.
@@ -38,9 +38,7 @@ pub struct Card {
     pub title: &'static str,
     /// The slide it belongs to.
     pub slide: &'static str,
-    /// The name of the student's file.
-    pub file: &'static str,
-    /// The file before the student has touched it.
+    /// The student's file before they have touched it.
     pub stub: &'static str,
     /// The functions to be written there, which are fields of the subject too.
     pub functions: &'static [&'static str],
@@ -54,6 +52,14 @@ pub struct Card {
     pub hints: [&'static str; 3],
     /// Where the course's own answer stands.
     pub solution: Solution,
+}
+
+impl Card {
+    /// The name of the student's file: `e03_ray_sphere.rs`.
+    pub fn file(&self) -> String {
+        let number = self.id.rsplit('.').next().unwrap_or_default();
+        format!("e{number:0>2}_{}.rs", self.name.replace('-', "_"))
+    }
 }
 
 /// An item of the course's code.
@@ -72,17 +78,73 @@ pub struct Check<S: 'static> {
     /// What it looks at, `a ray from inside`.
     pub name: &'static str,
     /// Judges; of several counter-examples the simplest is to be reported.
-    pub run: fn(&S) -> Result<(), Mismatch>,
+    pub run: fn(&S) -> Verdict,
 }
 
-/// The reference with one plausible mistake.
-pub struct Mutant<S: 'static> {
-    /// The slip in words, as a student is told: `the factor 2 is missing: …`.
+/// Something plausible that makes one function wrong.
+pub struct Slip<S: 'static> {
+    /// In words, as a student is told: `the factor 2 is missing: …`.
     pub says: &'static str,
     /// The check that must fail.
     pub caught_by: &'static str,
-    /// Makes the mistake.
-    pub mistake: fn(&mut S),
+    /// Puts the wrong function into a subject.
+    pub make: fn(&mut S),
+}
+
+impl<S> Slip<S> {
+    /// A subject that is right but for the slip.
+    pub fn made_in(&self, mut reference: S) -> S {
+        (self.make)(&mut reference);
+        reference
+    }
+}
+
+/// An exercise's slips: each in words, the check that must catch it, and what the function answers with it.
+///
+/// ```
+/// use lancer_exercise::{Slip, slips};
+///
+/// #[derive(Clone, Copy)]
+/// struct Subject {
+///     doubled: fn(f64) -> f64,
+///     mean: fn(f64, f64) -> f64,
+/// }
+///
+/// const SLIPS: &[Slip<Subject>] = slips! {
+///     doubled(x):
+///     "the number is squared: that is right for 0 and 2 only":
+///         "a number below 1" catches x * x;
+///
+///     mean(a, b):
+///     "the sum is not halved":
+///         "equal numbers" catches a + b;
+///     "the second number is forgotten":
+///         "different numbers" catches a;
+/// };
+///
+/// let right = Subject { doubled: |x| 2.0 * x, mean: |a, b| 0.5 * (a + b) };
+/// assert_eq!((SLIPS[1].made_in(right).mean)(3.0, 4.0), 7.0);
+/// ```
+///
+/// Above its slips stands the function that is wrong, a field of the subject, with names for its arguments. Where an
+/// answer calls a function of that name, it is the reference's: the slip shows what differs from it. Rustfmt leaves
+/// these lines alone: an answer of more than a few is a function further down.
+#[macro_export]
+macro_rules! slips {
+    (@ ($($argument:ident),+) $answer:expr) => {
+        |$($argument),+| {
+            // A slip may leave out an argument.
+            $(let _ = &$argument;)+
+            $answer
+        }
+    };
+    ($($function:ident $arguments:tt: $($says:literal: $caught_by:literal catches $answer:expr;)+)+) => {
+        &[$($($crate::Slip {
+            says: $says,
+            caught_by: $caught_by,
+            make: |subject| subject.$function = $crate::slips!(@ $arguments $answer),
+        }),+),+]
+    };
 }
 
 /// A course whose subject does not matter, for whoever handles those of several chapters.

@@ -6,7 +6,7 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
-use crate::{Check, Exercise, Mismatch};
+use crate::{Check, Exercise, Mismatch, Slip};
 
 /// No check takes a second with a right answer.
 const LIMIT: Duration = Duration::from_secs(10);
@@ -61,11 +61,10 @@ impl Report {
         let outcomes = outcomes(exercise, subject);
         let mut report = Self { outcomes, slip: None };
         if report.state() == State::Wrong && !report.is_endless() {
-            report.slip = exercise.mutants.iter().find_map(|mutant| {
-                let mut slipped = reference;
-                (mutant.mistake)(&mut slipped);
-                (self::outcomes(exercise, slipped) == report.outcomes).then_some(mutant.says)
-            });
+            let same = |slip: &&Slip<S>| {
+                self::outcomes(exercise, slip.made_in(reference)) == report.outcomes
+            };
+            report.slip = exercise.slips.iter().find(same).map(|slip| slip.says);
         }
         report
     }

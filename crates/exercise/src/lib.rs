@@ -2,9 +2,9 @@
 //!
 //! A chapter's *subject* is a struct of plain function pointers, one for each function to be written. Its
 //! [`Course`] holds the reference (the chapter's own code) and, for each [`Exercise`], the pristine stub,
-//! the [`Check`]s, and [`Mutant`]s: the reference with one plausible mistake. Mutants prove that the checks
-//! can fail ([`Course::prove_checks`]), and when a student's answer behaves as a mutant does, its name says which
-//! slip it is.
+//! the [`Check`]s, and [`Slip`]s: what makes the reference wrong in one plausible way. Slips prove that the checks
+//! can fail ([`Course::prove_checks`]), and when a student's answer behaves as the reference with a slip does, its
+//! words say which one it is.
 //!
 //! The student's files live in a small workspace of their own, made by `cargo xtask exercise`; its program
 //! puts their functions into a subject and calls [`run`].
@@ -17,8 +17,8 @@ mod runner;
 mod show;
 mod verify;
 
-pub use course::{Card, Check, Course, Exercise, Mutant, Shelf, Solution};
+pub use course::{Card, Check, Course, Exercise, Shelf, Slip, Solution};
 pub use judge::{Failure, Outcome, Report, State};
-pub use mismatch::{Mismatch, Shown, same, within};
+pub use mismatch::{Mismatch, Shown, Verdict, ensure, same, within};
 pub use runner::run;
 pub use verify::{Proof, Verified, passed_by_stub};

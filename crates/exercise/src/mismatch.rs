@@ -3,6 +3,9 @@ use std::fmt;
 use glam::DVec3;
 use lancer_core::geometry::Ray;
 
+/// What a check says: the counter-example, if there is one.
+pub type Verdict = Result<(), Mismatch>;
+
 /// A counter-example: where an answer is not the expected one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mismatch {
@@ -133,6 +136,14 @@ macro_rules! shown_exactly {
 
 shown_exactly!(bool, u32, u64, usize);
 
+/// Whether something holds that an answer promises.
+///
+/// # Errors
+/// The counter-example, if it does not.
+pub fn ensure(holds: bool, mismatch: impl FnOnce() -> Mismatch) -> Verdict {
+    if holds { Ok(()) } else { Err(mismatch()) }
+}
+
 /// Whether an answer is the expected one in every number, up to `tolerance`.
 ///
 /// # Errors
@@ -142,29 +153,24 @@ pub fn within<T: Shown>(
     case: impl FnOnce() -> String,
     got: &T,
     wanted: &T,
-) -> Result<(), Mismatch> {
-    if got.distance(wanted) <= tolerance {
-        return Ok(());
-    }
-    let (shown, wanted_shown) = (got.shown(), wanted.shown());
-    // Where six digits do not tell them apart, the difference does.
-    let wanted_shown = if shown == wanted_shown {
-        format!(
-            "{wanted_shown}, to {}; this is off by {}",
-            tolerance.shown(),
-            got.distance(wanted).shown()
-        )
-    } else {
-        wanted_shown
-    };
-    Err(Mismatch::new(case(), shown, wanted_shown))
+) -> Verdict {
+    let distance = got.distance(wanted);
+    ensure(distance <= tolerance, || {
+        let (got, mut wanted) = (got.shown(), wanted.shown());
+        // Where six digits do not tell them apart, the difference does.
+        if got == wanted {
+            let (tolerance, distance) = (tolerance.shown(), distance.shown());
+            wanted += &format!(", to {tolerance}; this is off by {distance}");
+        }
+        Mismatch::new(case(), got, wanted)
+    })
 }
 
 /// Whether an answer is the expected one exactly.
 ///
 /// # Errors
 /// The counter-example, if it is not. `case` names the input.
-pub fn same<T: Shown>(case: impl FnOnce() -> String, got: &T, wanted: &T) -> Result<(), Mismatch> {
+pub fn same<T: Shown>(case: impl FnOnce() -> String, got: &T, wanted: &T) -> Verdict {
     within(0.0, case, got, wanted)
 }
 

@@ -102,7 +102,7 @@ fn check<S: Copy + Send>(
             Outcome::Passed => line(&mut text, format_args!("  ✓ {name}")),
             Outcome::Failed(failure) => {
                 line(&mut text, format_args!("  ✗ {name}"));
-                describe(&mut text, card.file, failure);
+                describe(&mut text, &card.file(), failure);
                 if !all {
                     break;
                 }
@@ -196,9 +196,9 @@ fn show<S: Copy + Send + Sync + 'static>(
         },
         Ok(Err(panic)) => {
             let failure = Failure::of_panic(&*panic);
-            describe(&mut text, exercise.card.file, &failure);
+            describe(&mut text, &exercise.card.file(), &failure);
         }
-        Err(_) => describe(&mut text, exercise.card.file, &Failure::Endless),
+        Err(_) => describe(&mut text, &exercise.card.file(), &Failure::Endless),
     }
     (text, false)
 }

@@ -39,30 +39,23 @@ impl Proof {
 }
 
 impl Verified {
-    /// Runs all checks on the reference and on every mutant.
+    /// Runs all checks on the reference, without a slip and with each.
     pub fn of<S: Copy + Send>(exercise: &Exercise<S>, reference: S) -> Self {
         let failing = |outcome: &Outcome| matches!(outcome, Outcome::Failed(_));
         let checks = exercise.checks.iter().map(|check| check.name).collect();
         let of_reference = outcomes(exercise, reference);
-        let of_mutants: Vec<_> = exercise
-            .mutants
-            .iter()
-            .map(|mutant| {
-                let mut slipped = reference;
-                (mutant.mistake)(&mut slipped);
-                outcomes(exercise, slipped)
-            })
-            .collect();
-        let proofs =
-            exercise.mutants.iter().zip(&of_mutants).enumerate().map(|(k, (mutant, own))| {
-                let twin = of_mutants[..k].iter().position(|other| other == own);
-                Proof {
-                    says: mutant.says,
-                    caught_by: mutant.caught_by,
-                    caught: own.iter().map(|(_, outcome)| failing(outcome)).collect(),
-                    twin: twin.map(|index| exercise.mutants[index].says),
-                }
-            });
+        let slips = exercise.slips;
+        let of_slips: Vec<_> =
+            slips.iter().map(|slip| outcomes(exercise, slip.made_in(reference))).collect();
+        let proofs = slips.iter().zip(&of_slips).enumerate().map(|(k, (slip, own))| {
+            let twin = of_slips[..k].iter().position(|other| other == own);
+            Proof {
+                says: slip.says,
+                caught_by: slip.caught_by,
+                caught: own.iter().map(|(_, outcome)| failing(outcome)).collect(),
+                twin: twin.map(|index| slips[index].says),
+            }
+        });
         Self {
             id: exercise.card.id,
             name: exercise.card.name,

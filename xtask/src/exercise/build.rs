@@ -85,14 +85,14 @@ fn explain(messages: &[Value], started: &[Entry], chapter: Chapter, sources: &Pa
     };
     let mut broken = Vec::new();
     for entry in started {
-        let file = from.join(entry.card.file);
+        let file = from.join(entry.card.file());
         let of_file: String = errors
             .iter()
             .filter(|error| places(error).any(|(path, _)| Path::new(path) == file))
             .map(|error| rendered(error))
             .collect();
         if !of_file.is_empty() {
-            let path = shown(&sources.join(entry.card.file));
+            let path = shown(&sources.join(entry.card.file()));
             let message =
                 format!("{} does not compile: {path}\n\n{}", entry.title(), of_file.trim_end());
             broken.push(Broken { exercise: Some(entry.card.name), message });
@@ -121,7 +121,7 @@ fn missing_function(errors: &[&Value], entry: &Entry, sources: &Path) -> Option<
         let error = errors.iter().find(|error| {
             places(error).any(|(path, line)| path.ends_with("main.rs") && names(line, function))
         })?;
-        let file = shown(&sources.join(entry.card.file));
+        let file = shown(&sources.join(entry.card.file()));
         let problem = match error["code"]["code"].as_str() {
             Some("E0432") => {
                 format!("{file} has no function `{function}`; is it called otherwise?")
@@ -303,7 +303,6 @@ mod tests {
         let mut second = first;
         second.card.id = "E1.99";
         second.card.name = "second";
-        second.card.file = "e99_second.rs";
         second.card.functions = &["g"];
         second.card.stub = "pub fn g(x: f64) -> f64 {\n    todo!()\n}\n";
         [first, second]

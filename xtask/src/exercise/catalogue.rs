@@ -71,7 +71,7 @@ impl Entry {
 
     /// The pristine stub, from the root of the repository.
     pub fn stub_path(&self) -> String {
-        format!("chapters/{}/stubs/{}", self.chapter.folder, self.card.file)
+        format!("chapters/{}/stubs/{}", self.chapter.folder, self.card.file())
     }
 
     /// How the stub writes a function, up to its body, on one line.

@@ -1,4 +1,4 @@
-//! The table check × mutant.
+//! The table check × slip.
 
 use std::fmt::Write;
 use std::panic::set_hook;
@@ -14,7 +14,7 @@ use crate::chapters::CHAPTERS;
 /// # Errors
 /// If one does not hold.
 pub fn verify() -> Result<()> {
-    // Mutants may panic; that is an outcome like others.
+    // With a slip a function may panic; that is an outcome like others.
     set_hook(Box::new(|_| ()));
     let start = Instant::now();
     let proved: Vec<Verified> =

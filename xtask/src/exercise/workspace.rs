@@ -69,7 +69,7 @@ impl Workspace {
 
     /// The student's file of an exercise.
     pub fn path(&self, entry: &Entry) -> PathBuf {
-        self.sources(entry.chapter).join(entry.card.file)
+        self.sources(entry.chapter).join(entry.card.file())
     }
 
     /// Where the picture of an exercise goes.
@@ -143,7 +143,7 @@ impl Workspace {
 
     /// The stub that a student's file began with, out of an editor's sight.
     fn begun_with(&self, entry: &Entry) -> PathBuf {
-        self.folder.join(".stubs").join(entry.chapter.package).join(entry.card.file)
+        self.folder.join(".stubs").join(entry.chapter.package).join(entry.card.file())
     }
 
     /// Makes or corrects everything but the student's files.
@@ -269,7 +269,8 @@ fn program(chapter: Chapter, started: &[Entry]) -> String {
     let exercises = format!("{}::exercises", chapter.package.replace('-', "_"));
     let (mut modules, mut imports, mut fields) = (String::new(), String::new(), String::new());
     for entry in started {
-        let module = entry.card.file.trim_end_matches(".rs");
+        let file = entry.card.file();
+        let module = file.trim_end_matches(".rs");
         let _ = writeln!(modules, "mod {module};");
         for function in entry.card.functions {
             let _ = writeln!(imports, "    pub use super::{module}::{function};");

@@ -6,7 +6,7 @@ use lancer_core::geometry::{Interval, Ray};
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::intersector::{Intersector, LinearScan};
 use lancer_core::scene::Camera;
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, within};
+use lancer_exercise::{Card, Check, Exercise, Shown, Solution, Verdict, slips, within};
 use lancer_lesson::scenes::parsed;
 
 use super::reference::primary_ray;
@@ -18,7 +18,6 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         name: "primary-ray",
         title: "The ray through a film point",
         slide: "Principe géométrique : ligne œil-pixel",
-        file: "e01_primary_ray.rs",
         stub: include_str!("../../stubs/e01_primary_ray.rs"),
         functions: &["primary_ray"],
         minutes: 20,
@@ -53,189 +52,72 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "a turned camera, by hand", run: turned },
         Check { name: "odd numbers of pixels", run: odd },
     ],
-    mutants: &[
-        Mutant {
-            says: "the picture is upside down: y counts downwards from the upper edge",
-            caught_by: "the middle of the upper edge",
-            mistake: |subject| {
-                subject.primary_ray =
-                    |camera, size, x, y| primary_ray(camera, size, x, f64::from(size.height) - y);
-            },
-        },
-        Mutant {
-            says: "left and right are exchanged: to the right is forward × up, in this order",
-            caught_by: "the middle of the right edge",
-            mistake: |subject| {
-                subject.primary_ray =
-                    |camera, size, x, y| primary_ray(camera, size, f64::from(size.width) - x, y);
-            },
-        },
-        Mutant {
-            says: "the picture is turned by half: both signs are wrong",
-            caught_by: "the middle of the right edge",
-            mistake: |subject| {
-                subject.primary_ray = |camera, size, x, y| {
-                    let (width, height) = (f64::from(size.width), f64::from(size.height));
-                    primary_ray(camera, size, width - x, height - y)
-                };
-            },
-        },
-        Mutant {
-            says: "the opening angle is taken as horizontal: it is the vertical one, so a pixel's side is \
-                   2 tan(fov/2) over the height",
-            caught_by: "the middle of the upper edge",
-            mistake: |subject| {
-                subject.primary_ray = |camera, size, x, y| {
-                    let aspect = f64::from(size.height) / f64::from(size.width);
-                    zoomed(camera, aspect * tan_half(camera), size, x, y)
-                };
-            },
-        },
-        Mutant {
-            says: "the whole opening angle is taken: the film's half height is the tangent of half of it",
-            caught_by: "the middle of the upper edge",
-            mistake: |subject| {
-                subject.primary_ray =
-                    |camera, size, x, y| zoomed(camera, camera.fov.to_radians().tan(), size, x, y);
-            },
-        },
-        Mutant {
-            says: "the opening angle is in degrees, and the tangent wants radians: `to_radians()`",
-            caught_by: "the middle of the upper edge",
-            mistake: |subject| {
-                subject.primary_ray =
-                    |camera, size, x, y| zoomed(camera, (0.5 * camera.fov).tan(), size, x, y);
-            },
-        },
-        Mutant {
-            says: "the film is twice too small: from the middle to the edge it is tan(fov/2), from edge to \
-                   edge twice that",
-            caught_by: "the middle of the upper edge",
-            mistake: |subject| {
-                subject.primary_ray =
-                    |camera, size, x, y| zoomed(camera, 0.5 * tan_half(camera), size, x, y);
-            },
-        },
-        Mutant {
-            says: "pixels are not square: the film is as wide as high whatever the picture's shape; its \
-                   width is width/height times its height",
-            caught_by: "the middle of the right edge",
-            mistake: |subject| {
-                subject.primary_ray = |camera, size, x, y| {
-                    let (width, height) = (f64::from(size.width), f64::from(size.height));
-                    let squeezed = 0.5 * width + (x - 0.5 * width) * height / width;
-                    primary_ray(camera, size, squeezed, y)
-                };
-            },
-        },
-        Mutant {
-            says: "the direction is not unit: normalise the sum",
-            caught_by: "the middle of the upper edge",
-            mistake: |subject| {
-                subject.primary_ray = |camera, size, x, y| {
-                    let ray = primary_ray(camera, size, x, y);
-                    let forward = (camera.look_at - camera.eye).normalize();
-                    Ray::new(ray.origin, ray.direction / forward.dot(ray.direction))
-                };
-            },
-        },
-        Mutant {
-            says: "half a pixel is added: x and y are the film point itself, not a pixel's column and row",
-            caught_by: "the middle of the picture",
-            mistake: |subject| {
-                subject.primary_ray =
-                    |camera, size, x, y| primary_ray(camera, size, x + 0.5, y + 0.5);
-            },
-        },
-        Mutant {
-            says: "camera.up is used as it comes: it need not be perpendicular to the view axis, so the \
-                   film's own up is right × forward",
-            caught_by: "a turned camera, by hand",
-            mistake: |subject| {
-                subject.primary_ray = |camera, size, x, y| {
-                    let forward = (camera.look_at - camera.eye).normalize();
-                    let up = camera.up.normalize();
-                    through(camera, [forward, forward.cross(up).normalize(), up], size, x, y)
-                };
-            },
-        },
-        Mutant {
-            says: "forward × up is not made unit: camera.up need not be perpendicular to the view axis",
-            caught_by: "a turned camera, by hand",
-            mistake: |subject| {
-                subject.primary_ray = |camera, size, x, y| {
-                    let forward = (camera.look_at - camera.eye).normalize();
-                    let right = forward.cross(camera.up);
-                    through(camera, [forward, right, right.cross(forward)], size, x, y)
-                };
-            },
-        },
-        Mutant {
-            says: "look_at − eye is not made unit: right is, so the picture narrows with the distance of the \
-                   point looked at",
-            caught_by: "another opening angle",
-            mistake: |subject| {
-                subject.primary_ray = |camera, size, x, y| {
-                    let forward = camera.look_at - camera.eye;
-                    let right = forward.cross(camera.up).normalize();
-                    through(camera, [forward, right, right.cross(forward)], size, x, y)
-                };
-            },
-        },
-        Mutant {
-            says: "the film is not at distance 1 but at that of look_at, though its size is not",
-            caught_by: "another opening angle",
-            mistake: |subject| {
-                subject.primary_ray = |camera, size, x, y| {
-                    let away = camera.look_at.distance(camera.eye);
-                    zoomed(camera, tan_half(camera) / away, size, x, y)
-                };
-            },
-        },
-        Mutant {
-            says: "pixels are not square: the film is height/width as wide as high, where it should be \
-                   width/height",
-            caught_by: "the middle of the right edge",
-            mistake: |subject| {
-                subject.primary_ray = |camera, size, x, y| {
-                    let (width, height) = (f64::from(size.width), f64::from(size.height));
-                    let aspect = height / width;
-                    let squeezed = 0.5 * width + (x - 0.5 * width) * aspect * aspect;
-                    primary_ray(camera, size, squeezed, y)
-                };
-            },
-        },
-        Mutant {
-            says: "half the size is a whole number: `size.width / 2` drops the half of an odd one, so divide after \
-                   `f64::from`",
-            caught_by: "odd numbers of pixels",
-            mistake: |subject| {
-                subject.primary_ray = |camera, size, x, y| {
-                    let rounded = |pixels: u32| 0.5 * f64::from(pixels % 2);
-                    primary_ray(camera, size, x + rounded(size.width), y + rounded(size.height))
-                };
-            },
-        },
-        Mutant {
-            says: "the ray starts in look_at: it starts in the eye",
-            caught_by: "the middle of the picture",
-            mistake: |subject| {
-                subject.primary_ray = |camera, size, x, y| {
-                    Ray::new(camera.look_at, primary_ray(camera, size, x, y).direction)
-                };
-            },
-        },
-        Mutant {
-            says: "the ray looks backwards: from the eye to the film is look_at − eye, not eye − look_at",
-            caught_by: "the middle of the picture",
-            mistake: |subject| {
-                subject.primary_ray = |camera, size, x, y| {
-                    let behind = Camera { look_at: 2.0 * camera.eye - camera.look_at, ..*camera };
-                    primary_ray(&behind, size, x, y)
-                };
-            },
-        },
-    ],
+    slips: slips! {
+        primary_ray(camera, size, x, y):
+        "the picture is upside down: y counts downwards from the upper edge":
+            "the middle of the upper edge" catches primary_ray(camera, size, x, height(size) - y);
+        "left and right are exchanged: to the right is forward × up, in this order":
+            "the middle of the right edge" catches primary_ray(camera, size, width(size) - x, y);
+        "the picture is turned by half: both signs are wrong":
+            "the middle of the right edge" catches
+                primary_ray(camera, size, width(size) - x, height(size) - y);
+        "the opening angle is taken as horizontal: it is the vertical one, so a pixel's side is 2 tan(fov/2) over \
+         the height":
+            "the middle of the upper edge" catches
+                zoomed(camera, tan_half(camera) * height(size) / width(size), size, x, y);
+        "the whole opening angle is taken: the film's half height is the tangent of half of it":
+            "the middle of the upper edge" catches
+                zoomed(camera, camera.fov.to_radians().tan(), size, x, y);
+        "the opening angle is in degrees, and the tangent wants radians: `to_radians()`":
+            "the middle of the upper edge" catches
+                zoomed(camera, (0.5 * camera.fov).tan(), size, x, y);
+        "the film is twice too small: from the middle to the edge it is tan(fov/2), from edge to edge twice that":
+            "the middle of the upper edge" catches
+                zoomed(camera, 0.5 * tan_half(camera), size, x, y);
+        "pixels are not square: the film is as wide as high whatever the picture's shape; its width is \
+         width/height times its height":
+            "the middle of the right edge" catches
+                squeezed(camera, height(size) / width(size), size, x, y);
+        "the direction is not unit: normalise the sum":
+            "the middle of the upper edge" catches {
+                let ray = primary_ray(camera, size, x, y);
+                Ray::new(ray.origin, ray.direction / forward(camera).dot(ray.direction))
+            };
+        "half a pixel is added: x and y are the film point itself, not a pixel's column and row":
+            "the middle of the picture" catches primary_ray(camera, size, x + 0.5, y + 0.5);
+        "camera.up is used as it comes: it need not be perpendicular to the view axis, so the film's own up is \
+         right × forward":
+            "a turned camera, by hand" catches {
+                let (forward, up) = (forward(camera), camera.up.normalize());
+                through(camera, [forward, forward.cross(up).normalize(), up], size, x, y)
+            };
+        "forward × up is not made unit: camera.up need not be perpendicular to the view axis":
+            "a turned camera, by hand" catches
+                level(camera, forward(camera), forward(camera).cross(camera.up), size, x, y);
+        "look_at − eye is not made unit: right is, so the picture narrows with the distance of the point looked at":
+            "another opening angle" catches
+                level(camera, camera.look_at - camera.eye, right(camera), size, x, y);
+        "the film is not at distance 1 but at that of look_at, though its size is not":
+            "another opening angle" catches
+                zoomed(camera, tan_half(camera) / camera.look_at.distance(camera.eye), size, x, y);
+        "pixels are not square: the film is height/width as wide as high, where it should be width/height":
+            "the middle of the right edge" catches
+                squeezed(camera, (height(size) / width(size)).powi(2), size, x, y);
+        "half the size is a whole number: `size.width / 2` drops the half of an odd one, so divide after \
+         `f64::from`":
+            "odd numbers of pixels" catches {
+                let dropped = |pixels: u32| 0.5 * f64::from(pixels % 2);
+                primary_ray(camera, size, x + dropped(size.width), y + dropped(size.height))
+            };
+        "the ray starts in look_at: it starts in the eye":
+            "the middle of the picture" catches
+                Ray::new(camera.look_at, primary_ray(camera, size, x, y).direction);
+        "the ray looks backwards: from the eye to the film is look_at − eye, not eye − look_at":
+            "the middle of the picture" catches {
+                let look_at = 2.0 * camera.eye - camera.look_at;
+                primary_ray(&Camera { look_at, ..*camera }, size, x, y)
+            };
+    },
     draw,
     explain: None,
 };
@@ -245,25 +127,44 @@ fn tan_half(camera: &Camera) -> f64 {
     (0.5 * camera.fov.to_radians()).tan()
 }
 
+fn width(size: ImageSize) -> f64 {
+    size.width.into()
+}
+
+fn height(size: ImageSize) -> f64 {
+    size.height.into()
+}
+
+fn forward(camera: &Camera) -> DVec3 {
+    (camera.look_at - camera.eye).normalize()
+}
+
+fn right(camera: &Camera) -> DVec3 {
+    forward(camera).cross(camera.up).normalize()
+}
+
 /// The ray through a film of another half height at distance 1.
 fn zoomed(camera: &Camera, half_height: f64, size: ImageSize, x: f64, y: f64) -> Ray {
-    let forward = (camera.look_at - camera.eye).normalize();
-    let right = forward.cross(camera.up).normalize();
-    let zoom = half_height / tan_half(camera);
+    let (forward, right, zoom) = (forward(camera), right(camera), half_height / tan_half(camera));
     through(camera, [forward, zoom * right, zoom * right.cross(forward)], size, x, y)
 }
 
+/// The ray through a film whose pixels are not square.
+fn squeezed(camera: &Camera, share: f64, size: ImageSize, x: f64, y: f64) -> Ray {
+    let middle = 0.5 * width(size);
+    primary_ray(camera, size, middle + (x - middle) * share, y)
+}
+
+/// The ray through a film whose frame has another forward and right.
+fn level(camera: &Camera, forward: DVec3, right: DVec3, size: ImageSize, x: f64, y: f64) -> Ray {
+    through(camera, [forward, right, right.cross(forward)], size, x, y)
+}
+
 /// The ray through a film with another frame: forward, right and up.
-fn through(
-    camera: &Camera,
-    [forward, right, up]: [DVec3; 3],
-    size: ImageSize,
-    x: f64,
-    y: f64,
-) -> Ray {
-    let (width, height) = (f64::from(size.width), f64::from(size.height));
-    let pixel = 2.0 * tan_half(camera) / height;
-    let aside = (x - 0.5 * width) * right - (y - 0.5 * height) * up;
+fn through(camera: &Camera, frame: [DVec3; 3], size: ImageSize, x: f64, y: f64) -> Ray {
+    let [forward, right, up] = frame;
+    let pixel = 2.0 * tan_half(camera) / height(size);
+    let aside = (x - 0.5 * width(size)) * right - (y - 0.5 * height(size)) * up;
     Ray::new(camera.eye, (forward + pixel * aside).normalize())
 }
 
@@ -287,7 +188,7 @@ fn compare(
     (width, height): (u32, u32),
     (x, y): (f64, f64),
     direction: DVec3,
-) -> Result<(), Mismatch> {
+) -> Verdict {
     let case = || {
         let Camera { eye, look_at, up, fov } = camera;
         format!(
@@ -303,24 +204,24 @@ fn compare(
     within(1e-14, case, &got, &Ray::new(camera.eye, direction))
 }
 
-fn middle(subject: &Subject) -> Result<(), Mismatch> {
+fn middle(subject: &Subject) -> Verdict {
     compare(subject, &PLAIN, WIDE, (2.0, 1.0), DVec3::NEG_Z)?;
     compare(subject, &TURNED, WIDE, (2.0, 1.0), DVec3::new(2.0, 3.0, 6.0) / 7.0)
 }
 
-fn upper_edge(subject: &Subject) -> Result<(), Mismatch> {
+fn upper_edge(subject: &Subject) -> Verdict {
     let up_and_ahead = DVec3::new(0.0, 1.0, -1.0) / 2.0_f64.sqrt();
     compare(subject, &PLAIN, WIDE, (2.0, 0.0), up_and_ahead)
 }
 
-fn right_edge(subject: &Subject) -> Result<(), Mismatch> {
+fn right_edge(subject: &Subject) -> Verdict {
     // The film is as far from its middle to the right edge as it is high.
     let right_and_ahead = DVec3::new(2.0, 0.0, -1.0) / 5.0_f64.sqrt();
     compare(subject, &PLAIN, WIDE, (4.0, 1.0), right_and_ahead)
 }
 
 /// tan(fov/2) = 3/4: a pixel's side is 3/4 with two rows.
-fn opening_angle(subject: &Subject) -> Result<(), Mismatch> {
+fn opening_angle(subject: &Subject) -> Verdict {
     let fov = 2.0 * 0.75_f64.atan().to_degrees();
     let camera = Camera { fov, look_at: DVec3::new(0.0, 0.0, -10.0), ..PLAIN };
     // The centre of a pixel: from the middle half a pixel to the left and half a one up.
@@ -330,13 +231,13 @@ fn opening_angle(subject: &Subject) -> Result<(), Mismatch> {
 
 /// A pixel's side is 1/3 with six rows: (7, 2) is one to the right and 1/3 up on a film eight pixels wide.
 /// (2, 3, 6) + (−6, −2, 3) + (−3, 6, −2)/3 = (−5, 3, 25/3), which is (−15, 9, 25)/3.
-fn turned(subject: &Subject) -> Result<(), Mismatch> {
+fn turned(subject: &Subject) -> Verdict {
     let direction = DVec3::new(-15.0, 9.0, 25.0) / 931.0_f64.sqrt();
     compare(subject, &TURNED, (8, 6), (7.0, 2.0), direction)
 }
 
 /// The middle of 5 × 3 pixels is (2.5, 1.5), in the middle of one.
-fn odd(subject: &Subject) -> Result<(), Mismatch> {
+fn odd(subject: &Subject) -> Verdict {
     compare(subject, &PLAIN, (5, 3), (2.5, 1.5), DVec3::NEG_Z)
 }
 

@@ -8,7 +8,9 @@ use lancer_core::geometry::Ray;
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::sampling::Uniform;
 use lancer_core::scene::Camera;
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, same, within};
+use lancer_exercise::{
+    Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, ensure, same, slips, within,
+};
 
 use super::reference::ray_triangle;
 use super::{Meeting, Subject, painted};
@@ -21,7 +23,6 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         name: "ray-triangle",
         title: "A ray and a triangle, watertight",
         slide: "Algorithme : calcul et tri des intersections",
-        file: "e02_ray_triangle.rs",
         stub: include_str!("../../stubs/e02_ray_triangle.rs"),
         functions: &["ray_triangle"],
         minutes: 25,
@@ -63,182 +64,74 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "aimed at the corners of a closed mesh", run: corners_of_mesh },
         Check { name: "aimed at the edges of a closed mesh", run: edges_of_mesh },
     ],
-    mutants: &[
-        Mutant {
-            says: "t is a distance: it must be in units of the direction's length, which is not always 1",
-            caught_by: "in space, a direction of any length",
-            mistake: |subject| {
-                subject.ray_triangle = |corners, ray| {
-                    let (t, weights) = ray_triangle(corners, ray)?;
-                    Some((t * ray.direction.length(), weights))
-                };
-            },
-        },
-        Mutant {
-            says: "the weights are on the wrong corners: U, which is made of b and c, is the weight of a",
-            caught_by: "straight down, by hand",
-            mistake: |subject| {
-                subject.ray_triangle = |corners, ray| {
-                    let (t, weights) = ray_triangle(corners, ray)?;
-                    Some((t, DVec3::new(weights.y, weights.z, weights.x)))
-                };
-            },
-        },
-        Mutant {
-            says: "the weights are not divided by det = U + V + W",
-            caught_by: "straight down, by hand",
-            mistake: |subject| {
-                subject.ray_triangle = |corners, ray| {
-                    let (t, weights) = ray_triangle(corners, ray)?;
-                    Some((t, weights * det(corners, ray)))
-                };
-            },
-        },
-        Mutant {
-            says: "only one order of rotation is met: U, V and W are demanded to be positive, and they may be \
-                   all negative as well",
-            caught_by: "straight down, by hand",
-            mistake: |subject| {
-                subject.ray_triangle =
-                    |corners, ray| ray_triangle(corners, ray).filter(|_| det(corners, ray) > 0.0);
-            },
-        },
-        Mutant {
-            says: "only one order of rotation is met: U, V and W are demanded to be negative, and they may be \
-                   all positive as well",
-            caught_by: "either side, either order of rotation",
-            mistake: |subject| {
-                subject.ray_triangle =
-                    |corners, ray| ray_triangle(corners, ray).filter(|_| det(corners, ray) < 0.0);
-            },
-        },
-        Mutant {
-            says: "the back of the triangle is missed: it is met from either side",
-            caught_by: "either side, either order of rotation",
-            mistake: |subject| {
-                subject.ray_triangle = |corners @ [a, b, c], ray| {
-                    let n = (b - a).cross(c - a);
-                    ray_triangle(corners, ray).filter(|_| n.dot(ray.direction) < 0.0)
-                };
-            },
-        },
-        Mutant {
-            says: "the whole plane is met: the signs of U, V and W are not looked at",
-            caught_by: "beside the triangle",
-            mistake: |subject| subject.ray_triangle = plane_only,
-        },
-        Mutant {
-            says: "a hit behind the ray's origin counts: t must be positive",
-            caught_by: "behind the ray",
-            mistake: |subject| {
-                subject.ray_triangle = |corners, ray| {
-                    let backwards = || {
-                        let (t, weights) = ray_triangle(corners, &reversed(ray))?;
-                        Some((-t, weights))
-                    };
-                    ray_triangle(corners, ray).or_else(backwards)
-                };
-            },
-        },
-        Mutant {
-            says: "an edge function of 0 counts as a miss: a ray through an edge then misses both neighbours",
-            caught_by: "exactly through an edge or a corner",
-            mistake: |subject| {
-                subject.ray_triangle = |corners, ray| {
-                    ray_triangle(corners, ray).filter(|(_, weights)| weights.min_element() > 0.0)
-                };
-            },
-        },
-        Mutant {
-            says: "a small det is taken for 0: it is twice an area, so a fixed epsilon loses small triangles. \
-                   Besides, this is Möller and Trumbore's test, whose neighbours work out different numbers for \
-                   the edge that they share",
-            caught_by: "a very small triangle",
-            mistake: |subject| {
-                subject.ray_triangle = |corners @ [a, b, c], ray| {
-                    let det = (b - a).cross(c - a).dot(ray.direction);
-                    let t = moeller_trumbore(corners, ray).filter(|_| det.abs() > 1e-7)?;
-                    Some(weighted(corners, ray, t))
-                };
-            },
-        },
-        Mutant {
-            says: "a small det is taken for 0: it is twice an area, so a fixed epsilon loses small triangles; \
-                   only 0 itself is no triangle",
-            caught_by: "a very small triangle",
-            mistake: |subject| {
-                subject.ray_triangle = |corners, ray| {
-                    ray_triangle(corners, ray).filter(|_| det(corners, ray).abs() > 1e-7)
-                };
-            },
-        },
-        Mutant {
-            says: "this is Möller and Trumbore's test: neighbours work out different numbers for the edge that \
-                   they share, and a ray slips between them",
-            caught_by: "aimed at the corners of a closed mesh",
-            mistake: |subject| {
-                subject.ray_triangle = |corners, ray| {
-                    let t = moeller_trumbore(corners, ray)?;
-                    Some(weighted(corners, ray, t))
-                };
-            },
-        },
-        Mutant {
-            says: "the edge functions are fused multiply-adds: of the two products one is rounded and one is \
-                   not, so the neighbours' functions are no longer opposite",
-            caught_by: "aimed at the edges of a closed mesh",
-            mistake: |subject| {
-                subject.ray_triangle = |corners, ray| {
-                    let fused = || BySigns::new(ray).fused(corners);
-                    let t = ray_triangle(corners, ray).and_then(|_| fused())?;
-                    Some(weighted(corners, ray, t))
-                };
-            },
-        },
-        Mutant {
-            says: "the signs alone decide: for a ray in the triangle's plane they are rounding noise, so look at \
-                   the range of the corners' x and y too",
-            caught_by: "a ray in the triangle's plane",
-            mistake: |subject| {
-                subject.ray_triangle = |corners, ray| {
-                    let t = BySigns::new(ray).plain(corners)?;
-                    Some(weighted(corners, ray, t))
-                };
-            },
-        },
-        Mutant {
-            says: "a NaN gets through: `if t <= 0.0 { return None }` is false for it. Accept what is right \
-                   instead of rejecting what is wrong: `(t > 0.0 && t.is_finite()).then(…)`",
-            caught_by: "no number, no hit",
-            mistake: |subject| {
-                subject.ray_triangle = |corners, ray| {
-                    let no_number = || det(corners, ray).is_nan().then_some((f64::NAN, DVec3::NAN));
-                    ray_triangle(corners, ray).or_else(no_number)
-                };
-            },
-        },
-        Mutant {
-            says: "the weights are at other corners: U, the edge function of b and c, is a's, V is b's and W c's",
-            caught_by: "straight down, by hand",
-            mistake: |subject| {
-                subject.ray_triangle = |corners, ray| {
-                    let (t, weights) = ray_triangle(corners, ray)?;
-                    Some((t, weights.zxy()))
-                };
-            },
-        },
-        Mutant {
-            says: "t is not divided by det = U + V + W",
-            caught_by: "straight down, by hand",
-            mistake: |subject| {
-                subject.ray_triangle = |corners, ray| {
-                    let (t, weights) = ray_triangle(corners, ray)?;
-                    let t = t * det(corners, ray);
-                    (t > 0.0).then_some((t, weights))
-                };
-            },
-        },
-    ],
+    slips: slips! {
+        ray_triangle(corners, ray):
+        "t is a distance: it must be in units of the direction's length, which is not always 1":
+            "in space, a direction of any length" catches
+                ray_triangle(corners, ray).map(|(t, w)| (t * ray.direction.length(), w));
+        "the weights are on the wrong corners: U, which is made of b and c, is the weight of a":
+            "straight down, by hand" catches
+                ray_triangle(corners, ray).map(|(t, w)| (t, w.yzx()));
+        "the weights are not divided by det = U + V + W":
+            "straight down, by hand" catches
+                ray_triangle(corners, ray).map(|(t, w)| (t, w * det(corners, ray)));
+        "only one order of rotation is met: U, V and W are demanded to be positive, and they may be all negative \
+         as well":
+            "straight down, by hand" catches
+                ray_triangle(corners, ray).filter(|_| det(corners, ray) > 0.0);
+        "only one order of rotation is met: U, V and W are demanded to be negative, and they may be all positive \
+         as well":
+            "either side, either order of rotation" catches
+                ray_triangle(corners, ray).filter(|_| det(corners, ray) < 0.0);
+        "the back of the triangle is missed: it is met from either side":
+            "either side, either order of rotation" catches
+                ray_triangle(corners, ray).filter(|_| normal(corners).dot(ray.direction) < 0.0);
+        "the whole plane is met: the signs of U, V and W are not looked at":
+            "beside the triangle" catches weighted(corners, ray, plane(corners, ray));
+        "a hit behind the ray's origin counts: t must be positive":
+            "behind the ray" catches
+                ray_triangle(corners, ray)
+                    .or_else(|| ray_triangle(corners, &reversed(ray)).map(|(t, w)| (-t, w)));
+        "an edge function of 0 counts as a miss: a ray through an edge then misses both neighbours":
+            "exactly through an edge or a corner" catches
+                ray_triangle(corners, ray).filter(|(_, weights)| weights.min_element() > 0.0);
+        "a small det is taken for 0: it is twice an area, so a fixed epsilon loses small triangles. Besides, this \
+         is Möller and Trumbore's test, whose neighbours work out different numbers for the edge that they share":
+            "a very small triangle" catches {
+                let det = normal(corners).dot(ray.direction);
+                weighted(corners, ray, moeller_trumbore(corners, ray).filter(|_| det.abs() > 1e-7))
+            };
+        "a small det is taken for 0: it is twice an area, so a fixed epsilon loses small triangles; only 0 itself \
+         is no triangle":
+            "a very small triangle" catches
+                ray_triangle(corners, ray).filter(|_| det(corners, ray).abs() > 1e-7);
+        "this is Möller and Trumbore's test: neighbours work out different numbers for the edge that they share, \
+         and a ray slips between them":
+            "aimed at the corners of a closed mesh" catches
+                weighted(corners, ray, moeller_trumbore(corners, ray));
+        "the edge functions are fused multiply-adds: of the two products one is rounded and one is not, so the \
+         neighbours' functions are no longer opposite":
+            "aimed at the edges of a closed mesh" catches
+                ray_triangle(corners, ray)
+                    .and_then(|_| weighted(corners, ray, BySigns::new(ray).fused(corners)));
+        "the signs alone decide: for a ray in the triangle's plane they are rounding noise, so look at the range \
+         of the corners' x and y too":
+            "a ray in the triangle's plane" catches
+                weighted(corners, ray, BySigns::new(ray).plain(corners));
+        "a NaN gets through: `if t <= 0.0 { return None }` is false for it. Accept what is right instead of \
+         rejecting what is wrong: `(t > 0.0 && t.is_finite()).then(…)`":
+            "no number, no hit" catches
+                ray_triangle(corners, ray)
+                    .or_else(|| det(corners, ray).is_nan().then_some((f64::NAN, DVec3::NAN)));
+        "the weights are at other corners: U, the edge function of b and c, is a's, V is b's and W c's":
+            "straight down, by hand" catches
+                ray_triangle(corners, ray).map(|(t, w)| (t, w.zxy()));
+        "t is not divided by det = U + V + W":
+            "straight down, by hand" catches
+                ray_triangle(corners, ray)
+                    .map(|(t, w)| (t * det(corners, ray), w))
+                    .filter(|(t, _)| *t > 0.0);
+    },
     draw,
     explain: None,
 };
@@ -247,26 +140,29 @@ fn reversed(ray: &Ray) -> Ray {
     Ray::new(ray.origin, -ray.direction)
 }
 
+/// Twice the triangle's area long.
+fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a)
+}
+
 /// U + V + W: twice the area of the sheared triangle, negative where its corners turn counter-clockwise.
-fn det([a, b, c]: [DVec3; 3], ray: &Ray) -> f64 {
+fn det(corners: [DVec3; 3], ray: &Ray) -> f64 {
     let d = ray.direction;
-    -(b - a).cross(c - a).dot(d) / d[d.abs().max_position()]
+    -normal(corners).dot(d) / d[d.abs().max_position()]
 }
 
 /// Where a ray meets the plane of a triangle.
-fn plane_only(corners: [DVec3; 3], ray: &Ray) -> Option<Meeting> {
-    let [a, b, c] = corners;
-    let n = (b - a).cross(c - a);
-    let t = n.dot(a - ray.origin) / n.dot(ray.direction);
-    (t > 0.0 && t.is_finite()).then(|| weighted(corners, ray, t))
+fn plane(corners: [DVec3; 3], ray: &Ray) -> Option<f64> {
+    let n = normal(corners);
+    let t = n.dot(corners[0] - ray.origin) / n.dot(ray.direction);
+    (t > 0.0 && t.is_finite()).then_some(t)
 }
 
-/// t with the weights of the corners there, from areas.
-fn weighted([a, b, c]: [DVec3; 3], ray: &Ray, t: f64) -> Meeting {
-    let n = (b - a).cross(c - a);
-    let p = ray.at(t);
+/// t, if any, with the weights of the corners there, from areas.
+fn weighted(corners: [DVec3; 3], ray: &Ray, t: Option<f64>) -> Option<Meeting> {
+    let ([a, b, c], n, p) = (corners, normal(corners), ray.at(t?));
     let share = |from: DVec3, to: DVec3| (to - from).cross(p - from).dot(n) / n.length_squared();
-    (t, DVec3::new(share(b, c), share(c, a), share(a, b)))
+    Some((t?, DVec3::new(share(b, c), share(c, a), share(a, b))))
 }
 
 fn case([a, b, c]: [DVec3; 3], ray: &Ray) -> String {
@@ -279,66 +175,57 @@ fn meets(
     corners: [DVec3; 3],
     ray: &Ray,
     wanted: Meeting,
-) -> Result<(), Mismatch> {
+) -> Verdict {
     let got = (subject.ray_triangle)(corners, ray);
     within(1e-13, || format!("{what}{}", case(corners, ray)), &got, &Some(wanted))
 }
 
-fn misses(subject: &Subject, what: &str, corners: [DVec3; 3], ray: &Ray) -> Result<(), Mismatch> {
+fn misses(subject: &Subject, what: &str, corners: [DVec3; 3], ray: &Ray) -> Verdict {
     let got = (subject.ray_triangle)(corners, ray);
     same(|| format!("{what}: {}", case(corners, ray)), &got, &None)
 }
 
 /// In the plane z = 0.
 const FLAT: [DVec3; 3] = [DVec3::ZERO, DVec3::new(8.0, 0.0, 0.0), DVec3::new(0.0, 8.0, 0.0)];
+/// (1, 2, 0) = 5/8 a + 1/8 b + 2/8 c.
+const WEIGHTS: DVec3 = DVec3::new(0.625, 0.125, 0.25);
 /// A third, a half and a sixth of these corners are (2, 2.5, 2) together: [`INSIDE`].
 const SLANTED: [DVec3; 3] =
     [DVec3::new(3.0, 6.0, -6.0), DVec3::new(1.0, -1.0, 8.0), DVec3::new(3.0, 6.0, 0.0)];
 const INSIDE: DVec3 = DVec3::new(2.0, 2.5, 2.0);
-
-fn weights() -> DVec3 {
-    DVec3::new(1.0 / 3.0, 1.0 / 2.0, 1.0 / 6.0)
-}
+const SHARES: DVec3 = DVec3::new(1.0 / 3.0, 1.0 / 2.0, 1.0 / 6.0);
 
 /// A ray along −z through (x, y) of [`FLAT`], which it meets at t = 3.
 fn down(x: f64, y: f64) -> Ray {
     Ray::new(DVec3::new(x, y, 3.0), DVec3::NEG_Z)
 }
 
-fn straight_down(subject: &Subject) -> Result<(), Mismatch> {
-    // (1, 2) = 5/8 a + 1/8 b + 2/8 c.
-    meets(
-        subject,
-        "aimed at the inside: ",
-        FLAT,
-        &down(1.0, 2.0),
-        (3.0, DVec3::new(0.625, 0.125, 0.25)),
-    )
+fn straight_down(subject: &Subject) -> Verdict {
+    meets(subject, "aimed at the inside: ", FLAT, &down(1.0, 2.0), (3.0, WEIGHTS))
 }
 
 /// The longest axis of the direction is x, y and z in turn, and points both ways.
-fn in_space(subject: &Subject) -> Result<(), Mismatch> {
+fn in_space(subject: &Subject) -> Verdict {
     let directions = [DVec3::new(-3.0, 1.0, 2.0), DVec3::new(4.0, -1.0, 2.0)];
     let turns: [fn(DVec3) -> DVec3; 3] = [|v| v, |v| v.yzx(), |v| v.zxy()];
     for direction in directions {
         for turn in turns {
             let ray = Ray::new(turn(INSIDE - 2.0 * direction), turn(direction));
-            meets(subject, "aimed at the inside: ", SLANTED.map(turn), &ray, (2.0, weights()))?;
+            meets(subject, "aimed at the inside: ", SLANTED.map(turn), &ray, (2.0, SHARES))?;
         }
     }
     Ok(())
 }
 
-fn other_side(subject: &Subject) -> Result<(), Mismatch> {
-    let weights = DVec3::new(0.625, 0.125, 0.25);
+fn other_side(subject: &Subject) -> Verdict {
     let up = Ray::new(DVec3::new(1.0, 2.0, -3.0), DVec3::Z);
-    meets(subject, "from below: ", FLAT, &up, (3.0, weights))?;
+    meets(subject, "from below: ", FLAT, &up, (3.0, WEIGHTS))?;
     let [a, b, c] = FLAT;
     let what = "the corners in the other order of rotation: ";
-    meets(subject, what, [a, c, b], &down(1.0, 2.0), (3.0, weights.xzy()))
+    meets(subject, what, [a, c, b], &down(1.0, 2.0), (3.0, WEIGHTS.xzy()))
 }
 
-fn beside(subject: &Subject) -> Result<(), Mismatch> {
+fn beside(subject: &Subject) -> Verdict {
     // Beyond each edge, and beyond each corner.
     let points = [(4.0, -1.0), (-1.0, 4.0), (5.0, 4.0), (-1.0, -1.0), (10.0, -1.0), (-1.0, 10.0)];
     // In the range of the corners' x and y is what lies beyond the longest edge, which is each one's in turn.
@@ -351,13 +238,13 @@ fn beside(subject: &Subject) -> Result<(), Mismatch> {
     Ok(())
 }
 
-fn behind(subject: &Subject) -> Result<(), Mismatch> {
+fn behind(subject: &Subject) -> Verdict {
     misses(subject, "the ray leads away", FLAT, &reversed(&down(1.0, 2.0)))?;
     let start = Ray::new(DVec3::new(1.0, 2.0, 0.0), DVec3::NEG_Z);
     misses(subject, "the ray starts on it (t = 0)", FLAT, &start)
 }
 
-fn exact_borders(subject: &Subject) -> Result<(), Mismatch> {
+fn exact_borders(subject: &Subject) -> Verdict {
     let points = [
         ((4.0, 0.0), DVec3::new(0.5, 0.5, 0.0)),
         ((0.0, 2.0), DVec3::new(0.75, 0.0, 0.25)),
@@ -375,15 +262,14 @@ fn exact_borders(subject: &Subject) -> Result<(), Mismatch> {
 }
 
 /// [`FLAT`] 10⁻¹² times as large: twice its area is 6.4·10⁻²³.
-fn small(subject: &Subject) -> Result<(), Mismatch> {
+fn small(subject: &Subject) -> Verdict {
     let ray = Ray::new(DVec3::new(1e-12, 2e-12, 3.0), DVec3::NEG_Z);
-    let wanted = (3.0, DVec3::new(0.625, 0.125, 0.25));
-    meets(subject, "8e-12 wide: ", FLAT.map(|corner| 1e-12 * corner), &ray, wanted)
+    meets(subject, "8e-12 wide: ", FLAT.map(|corner| 1e-12 * corner), &ray, (3.0, WEIGHTS))
 }
 
 /// Corners and rays are integer combinations of two integer vectors, so that they lie in one plane
 /// exactly, and the ray runs past the triangle by the signs of two-dimensional products, which are exact.
-fn in_plane(subject: &Subject) -> Result<(), Mismatch> {
+fn in_plane(subject: &Subject) -> Verdict {
     let ray = Ray::new(DVec3::new(-1.0, 2.0, 0.0), DVec3::X);
     misses(subject, "in the plane z = 0", FLAT, &ray)?;
     let mut random = Uniform::new(7, 0, 0);
@@ -398,19 +284,20 @@ fn in_plane(subject: &Subject) -> Result<(), Mismatch> {
         let passes = sides.iter().all(|&side| side > 0.0) || sides.iter().all(|&side| side < 0.0);
         let in_space = |v: DVec2| v.x * p + v.y * q;
         let ray = Ray::new(in_space(origin), in_space(direction));
-        if passes && (subject.ray_triangle)(corners.map(in_space), &ray).is_some() {
-            // Which one it is depends on the order of rounding; that one is does not.
-            return Err(Mismatch::new(
+        let is_met = (subject.ray_triangle)(corners.map(in_space), &ray).is_some();
+        // Which one it is depends on the order of rounding; that one is does not.
+        ensure(!(passes && is_met), || {
+            Mismatch::new(
                 "20000 triangles and rays in their planes, which run past them",
                 "some are met: U, V and W are rounding noise, and their signs agree by chance",
                 "None for each",
-            ));
-        }
+            )
+        })?;
     }
     Ok(())
 }
 
-fn no_number(subject: &Subject) -> Result<(), Mismatch> {
+fn no_number(subject: &Subject) -> Verdict {
     let ray = Ray::new(DVec3::new(1.0, 2.0, 3.0), DVec3::ZERO);
     misses(subject, "a ray without a direction", FLAT, &ray)?;
     let [a, b, _] = FLAT;
@@ -418,32 +305,29 @@ fn no_number(subject: &Subject) -> Result<(), Mismatch> {
     misses(subject, "a triangle without an area", [a, b, b], &down(1.0, 0.0))
 }
 
-fn corners_of_mesh(subject: &Subject) -> Result<(), Mismatch> {
+fn corners_of_mesh(subject: &Subject) -> Verdict {
     closed(subject, VERTICES, "corners of its triangles")
 }
 
-fn edges_of_mesh(subject: &Subject) -> Result<(), Mismatch> {
+fn edges_of_mesh(subject: &Subject) -> Verdict {
     closed(subject, EDGES, "points of its triangles' edges")
 }
 
 /// Whether no ray leaves a closed mesh.
-fn closed(subject: &Subject, aim: usize, at: &str) -> Result<(), Mismatch> {
+fn closed(subject: &Subject, aim: usize, at: &str) -> Verdict {
     let mesh = icosphere(2);
     let met = |ray: &Ray| {
         (0..mesh.triangles.len()).any(|k| (subject.ray_triangle)(mesh.corners(k), ray).is_some())
     };
-    if aimed(&mesh, aim, 4000).iter().all(met) {
-        return Ok(());
-    }
-    // How many depends on the order of rounding, and so does which.
-    Err(Mismatch::new(
-        format!(
-            "4000 rays from inside a closed mesh of {} triangles, aimed at {at}",
-            mesh.triangles.len()
-        ),
-        "some meet no triangle at all: they slip between neighbours",
-        "each meets at least one",
-    ))
+    let triangles = mesh.triangles.len();
+    // How many slip through depends on the order of rounding, and so does which.
+    ensure(aimed(&mesh, aim, 4000).iter().all(met), || {
+        Mismatch::new(
+            format!("4000 rays from inside a closed mesh of {triangles} triangles, aimed at {at}"),
+            "some meet no triangle at all: they slip between neighbours",
+            "each meets at least one",
+        )
+    })
 }
 
 /// A ball of 80 triangles in the colours of their corners' weights, darker the farther away it is; below it

@@ -5,7 +5,9 @@ use lancer_core::Rgb;
 use lancer_core::geometry::{Ray, Sphere};
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::sampling::Uniform;
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, within};
+use lancer_exercise::{
+    Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, ensure, slips, within,
+};
 
 use super::reference::ray_sphere;
 use super::{Subject, painted};
@@ -18,7 +20,6 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         name: "ray-sphere",
         title: "A ray and a sphere, near and far",
         slide: "Algorithme : calcul et tri des intersections",
-        file: "e03_ray_sphere.rs",
         stub: include_str!("../../stubs/e03_ray_sphere.rs"),
         functions: &["ray_sphere"],
         minutes: 20,
@@ -57,257 +58,168 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "a tiny sphere close by", run: tiny },
         Check { name: "starting on the sphere", run: on_sphere },
     ],
-    mutants: &[
-        Mutant {
-            says: "the farther root comes first: from outside that is where the ray leaves the sphere",
-            caught_by: "straight ahead",
-            mistake: |subject| {
-                subject.ray_sphere = |sphere, ray| {
-                    ray_sphere(sphere, ray)?;
-                    roots(sphere, ray).map(|[_, far]| far)
-                };
-            },
-        },
-        Mutant {
-            says: "a hit behind the ray's origin counts: t must be positive",
-            caught_by: "behind the ray",
-            mistake: |subject| {
-                subject.ray_sphere = |sphere, ray| roots(sphere, ray).map(|[near, _]| near);
-            },
-        },
-        Mutant {
-            says: "only the nearer root is tried: from inside the sphere that one is behind, and the farther \
-                   one is the hit",
-            caught_by: "from inside",
-            mistake: |subject| {
-                subject.ray_sphere = |sphere, ray| {
-                    let hit = ray_sphere(sphere, ray);
-                    hit.filter(|_| roots(sphere, ray).is_some_and(|[near, _]| near > 0.0))
-                };
-            },
-        },
-        Mutant {
-            says: "only the nearer root is tried: from inside the sphere that one is behind, and the farther \
-                   one is the hit. Besides, the discriminant is the textbook's, a difference of two huge numbers \
-                   when the sphere is far away",
-            caught_by: "from inside",
-            mistake: |subject| {
-                subject.ray_sphere =
-                    |sphere, ray| textbook_sphere(*sphere, ray).filter(|near| *near > 0.0);
-            },
-        },
-        Mutant {
-            says: "a fixed epsilon: what is nearer than that is lost, and in a tiny scene that is everything; \
-                   0 is the limit, and the noise of F·F − r² is what to cut",
-            caught_by: "a tiny sphere close by",
-            mistake: |subject| {
-                subject.ray_sphere =
-                    |sphere, ray| roots(sphere, ray)?.into_iter().find(|t| *t > 1e-6);
-            },
-        },
-        Mutant {
-            says: "D·D is left out, which is 1 for unit directions only",
-            caught_by: "a direction of length 7",
-            mistake: |subject| {
-                subject.ray_sphere = |sphere, ray| {
-                    let f = ray.origin - sphere.center;
-                    let b = f.dot(ray.direction);
-                    let discriminant = b * b - f.length_squared() + sphere.radius * sphere.radius;
-                    let root = (discriminant >= 0.0).then(|| discriminant.sqrt())?;
-                    [-b - root, -b + root].into_iter().find(|t| *t > 0.0)
-                };
-            },
-        },
-        Mutant {
-            says: "t is a distance: it must be in units of the direction's length, which is not always 1",
-            caught_by: "a direction of length 7",
-            mistake: |subject| {
-                subject.ray_sphere =
-                    |sphere, ray| Some(ray_sphere(sphere, ray)? * ray.direction.length());
-            },
-        },
-        Mutant {
-            says: "b² − 4ac goes with b = 2 (F·D), and the 2 is missing",
-            caught_by: "straight ahead",
-            mistake: |subject| {
-                subject.ray_sphere = |sphere, ray| {
-                    let f = ray.origin - sphere.center;
-                    let (a, b) = (ray.direction.length_squared(), f.dot(ray.direction));
-                    let c = f.length_squared() - sphere.radius * sphere.radius;
-                    let discriminant = b * b - 4.0 * a * c;
-                    let root = (discriminant >= 0.0).then(|| discriminant.sqrt())?;
-                    [-b - root, -b + root].map(|t| t / (2.0 * a)).into_iter().find(|t| *t > 0.0)
-                };
-            },
-        },
-        Mutant {
-            says: "the discriminant is the textbook's, a difference of two huge numbers when the sphere is far \
-                   away; and a ray that starts on the sphere meets it there, by rounding",
-            caught_by: "far away",
-            mistake: |subject| {
-                subject.ray_sphere = |sphere, ray| match textbook_sphere(*sphere, ray)? {
-                    near if near > 0.0 => Some(near),
-                    _ => roots(sphere, ray)?.into_iter().find(|t| *t > 0.0),
-                };
-            },
-        },
-        Mutant {
-            says: "the discriminant is the textbook's, a difference of two huge numbers when the sphere is far \
-                   away: take (D·D) r² − |F×D|²",
-            caught_by: "far away",
-            mistake: |subject| {
-                subject.ray_sphere = |sphere, ray| {
-                    let near = textbook_sphere(*sphere, ray)?;
-                    let starts_on_it = is_noise(sphere, ray);
-                    if near > 0.0 && !starts_on_it { Some(near) } else { ray_sphere(sphere, ray) }
-                };
-            },
-        },
-        Mutant {
-            says: "the discriminant is right, but the nearer root cancels: −(F·D) and √discriminant are added \
-                   with one sign and subtracted with the other; take it from the product of the roots",
-            caught_by: "a huge sphere close by",
-            mistake: |subject| {
-                subject.ray_sphere = |sphere, ray| {
-                    let hit = ray_sphere(sphere, ray)?;
-                    let (f, d) = (ray.origin - sphere.center, ray.direction);
-                    let dd = d.length_squared();
-                    let area = f.cross(d).length_squared();
-                    let root = (dd * sphere.radius * sphere.radius - area).sqrt();
-                    let near = (-f.dot(d) - root) / dd;
-                    Some(if near > 0.0 { near } else { hit })
-                };
-            },
-        },
-        Mutant {
-            says: "a ray that just touches the sphere is lost: a discriminant of 0 has one root",
-            caught_by: "just touching",
-            mistake: |subject| {
-                subject.ray_sphere = |sphere, ray| {
-                    roots(sphere, ray).filter(|[near, far]| near < far)?;
-                    ray_sphere(sphere, ray)
-                };
-            },
-        },
-        Mutant {
-            says: "the rounding noise of F·F − r² is taken for a distance: a ray that starts on the sphere \
-                   meets it there",
-            caught_by: "starting on the sphere",
-            mistake: |subject| {
-                subject.ray_sphere =
-                    |sphere, ray| roots(sphere, ray)?.into_iter().find(|t| *t > 0.0);
-            },
-        },
-        Mutant {
-            says: "F points from the ray's origin to the centre: that turns the sign of F·D, and with it those \
-                   of the roots",
-            caught_by: "straight ahead",
-            mistake: |subject| {
-                subject.ray_sphere = |sphere, ray| {
-                    let turned = roots(sphere, ray)?.map(|t| -t);
-                    turned.into_iter().rev().find(|t| *t > 0.0)
-                };
-            },
-        },
-        Mutant {
-            says: "D was normalised on the way, and t is a distance: it must be in units of D's length. Besides, \
-                   the distance of the centre to the line comes from |F|² − (F·D)², which cancels far away as \
-                   the textbook's discriminant does",
-            caught_by: "a direction of length 7",
-            mistake: |subject| {
-                subject.ray_sphere = |sphere, ray| {
-                    let to_center = sphere.center - ray.origin;
-                    let along = to_center.dot(ray.direction.normalize());
-                    let aside = to_center.length_squared() - along * along;
-                    let half = sphere.radius * sphere.radius - aside;
-                    let half = (half >= 0.0).then(|| half.sqrt())?;
-                    [along - half, along + half].into_iter().find(|t| *t > 0.0)
-                };
-            },
-        },
-    ],
+    slips: slips! {
+        ray_sphere(sphere, ray):
+        "the farther root comes first: from outside that is where the ray leaves the sphere":
+            "straight ahead" catches
+                ray_sphere(sphere, ray).and_then(|_| roots(sphere, ray)).map(|[_, far]| far);
+        "a hit behind the ray's origin counts: t must be positive":
+            "behind the ray" catches roots(sphere, ray).map(|[near, _]| near);
+        "only the nearer root is tried: from inside the sphere that one is behind, and the farther one is the hit":
+            "from inside" catches
+                ray_sphere(sphere, ray)
+                    .filter(|_| roots(sphere, ray).is_some_and(|[near, _]| near > 0.0));
+        "only the nearer root is tried: from inside the sphere that one is behind, and the farther one is the hit. \
+         Besides, the discriminant is the textbook's, a difference of two huge numbers when the sphere is far away":
+            "from inside" catches textbook_sphere(*sphere, ray).filter(|near| *near > 0.0);
+        "a fixed epsilon: what is nearer than that is lost, and in a tiny scene that is everything; 0 is the \
+         limit, and the noise of F·F − r² is what to cut":
+            "a tiny sphere close by" catches roots(sphere, ray)?.into_iter().find(|t| *t > 1e-6);
+        "D·D is left out, which is 1 for unit directions only":
+            "a direction of length 7" catches {
+                let [_, fd, ff, rr] = terms(sphere, ray);
+                positive(around(-fd, fd * fd - ff + rr))
+            };
+        "t is a distance: it must be in units of the direction's length, which is not always 1":
+            "a direction of length 7" catches
+                ray_sphere(sphere, ray).map(|t| t * ray.direction.length());
+        "b² − 4ac goes with b = 2 (F·D), and the 2 is missing":
+            "straight ahead" catches {
+                let [a, b, ff, rr] = terms(sphere, ray);
+                positive(around(-b, b * b - 4.0 * a * (ff - rr))).map(|t| t / (2.0 * a))
+            };
+        "the discriminant is the textbook's, a difference of two huge numbers when the sphere is far away; and a \
+         ray that starts on the sphere meets it there, by rounding":
+            "far away" catches {
+                let near = textbook_sphere(*sphere, ray)?;
+                if near > 0.0 { Some(near) } else { positive(roots(sphere, ray)) }
+            };
+        "the discriminant is the textbook's, a difference of two huge numbers when the sphere is far away: take \
+         (D·D) r² − |F×D|²":
+            "far away" catches {
+                let near = textbook_sphere(*sphere, ray)?;
+                let is_hit = near > 0.0 && !is_noise(sphere, ray);
+                if is_hit { Some(near) } else { ray_sphere(sphere, ray) }
+            };
+        "the discriminant is right, but the nearer root cancels: −(F·D) and √discriminant are added with one sign \
+         and subtracted with the other; take it from the product of the roots":
+            "a huge sphere close by" catches {
+                let ([dd, fd, ..], hit) = (terms(sphere, ray), ray_sphere(sphere, ray)?);
+                let near = (-fd - discriminant(sphere, ray).sqrt()) / dd;
+                Some(if near > 0.0 { near } else { hit })
+            };
+        "a ray that just touches the sphere is lost: a discriminant of 0 has one root":
+            "just touching" catches
+                ray_sphere(sphere, ray)
+                    .filter(|_| roots(sphere, ray).is_some_and(|[near, far]| near < far));
+        "the rounding noise of F·F − r² is taken for a distance: a ray that starts on the sphere meets it there":
+            "starting on the sphere" catches positive(roots(sphere, ray));
+        "F points from the ray's origin to the centre: that turns the sign of F·D, and with it those of the roots":
+            "straight ahead" catches positive(roots(sphere, ray).map(|[near, far]| [-far, -near]));
+        "D was normalised on the way, and t is a distance: it must be in units of D's length. Besides, the \
+         distance of the centre to the line comes from |F|² − (F·D)², which cancels far away as the textbook's \
+         discriminant does":
+            "a direction of length 7" catches {
+                let unit = Ray::new(ray.origin, ray.direction.normalize());
+                let [_, fd, ff, rr] = terms(sphere, &unit);
+                positive(around(-fd, rr - (ff - fd * fd)))
+            };
+    },
     draw,
     explain: None,
 };
 
+/// D·D, F·D, F·F and r².
+fn terms(sphere: &Sphere, ray: &Ray) -> [f64; 4] {
+    let (f, d) = (ray.origin - sphere.center, ray.direction);
+    [d.length_squared(), f.dot(d), f.length_squared(), sphere.radius * sphere.radius]
+}
+
+/// (D·D) r² − |F×D|².
+fn discriminant(sphere: &Sphere, ray: &Ray) -> f64 {
+    let [dd, _, _, rr] = terms(sphere, ray);
+    dd * rr - (ray.origin - sphere.center).cross(ray.direction).length_squared()
+}
+
 /// The roots, the smaller first, to all digits but with the noise of F·F − r².
 fn roots(sphere: &Sphere, ray: &Ray) -> Option<[f64; 2]> {
-    let (f, d, rr) = (ray.origin - sphere.center, ray.direction, sphere.radius * sphere.radius);
-    let (fd, dd) = (f.dot(d), d.length_squared());
-    let discriminant = dd * rr - f.cross(d).length_squared();
+    let ([dd, fd, ff, rr], discriminant) = (terms(sphere, ray), discriminant(sphere, ray));
     let root = (discriminant >= 0.0).then(|| discriminant.sqrt())?;
     let q = -fd - root.copysign(fd);
-    let (a, b) = ((f.length_squared() - rr) / q, q / dd);
+    let (a, b) = ((ff - rr) / q, q / dd);
     Some([a.min(b), a.max(b)])
+}
+
+/// The roots as textbooks have them: ±√discriminant around the middle.
+fn around(middle: f64, discriminant: f64) -> Option<[f64; 2]> {
+    let root = (discriminant >= 0.0).then(|| discriminant.sqrt())?;
+    Some([middle - root, middle + root])
+}
+
+fn positive(roots: Option<[f64; 2]>) -> Option<f64> {
+    roots?.into_iter().find(|t| *t > 0.0)
 }
 
 /// Whether the ray starts on the sphere, up to rounding.
 fn is_noise(sphere: &Sphere, ray: &Ray) -> bool {
-    let (ff, rr) = ((ray.origin - sphere.center).length_squared(), sphere.radius * sphere.radius);
+    let [_, _, ff, rr] = terms(sphere, ray);
     (ff - rr).abs() <= 4.0 * f64::EPSILON * (ff + rr)
 }
 
-fn compare(
-    subject: &Subject,
-    what: &str,
-    sphere: Sphere,
-    ray: Ray,
-    wanted: Option<f64>,
-) -> Result<(), Mismatch> {
-    let case = || {
-        let Sphere { center, radius } = sphere;
-        let (center, radius) = (center.shown(), radius.shown());
-        format!("{what}: sphere around {center} of radius {radius}; ray: {}", ray.shown())
-    };
-    within(1e-12, case, &(subject.ray_sphere)(&sphere, &ray), &wanted)
+type Scene = (Sphere, Ray);
+
+fn case(what: &str, Sphere { center, radius }: &Sphere, ray: &Ray) -> String {
+    let (center, radius) = (center.shown(), radius.shown());
+    format!("{what}: sphere around {center} of radius {radius}; ray: {}", ray.shown())
+}
+
+fn compare(subject: &Subject, what: &str, (sphere, ray): Scene, wanted: Option<f64>) -> Verdict {
+    let got = (subject.ray_sphere)(&sphere, &ray);
+    within(1e-12, || case(what, &sphere, &ray), &got, &wanted)
 }
 
 /// A ray from the origin along D = (2, 3, 6), of length 7, and a sphere of radius 35 whose centre is
 /// k D + 3 (6, 2, −3): 21 beside the ray. The half chord is √(35² − 21²) = 28 = 4 |D|, so the ray enters at
 /// t = k − 4 and leaves at k + 4.
-fn aside(k: f64) -> (Sphere, Ray) {
+fn aside(k: f64) -> Scene {
     let direction = DVec3::new(2.0, 3.0, 6.0);
     let center = k * direction + DVec3::new(18.0, 6.0, -9.0);
     (Sphere { center, radius: 35.0 }, Ray::new(DVec3::ZERO, direction))
 }
 
-fn ahead(subject: &Subject) -> Result<(), Mismatch> {
+fn ahead(subject: &Subject) -> Verdict {
     let sphere = Sphere { center: DVec3::new(1.0, 2.0, -5.0), radius: 2.0 };
     let ray = Ray::new(DVec3::new(1.0, 2.0, 0.0), DVec3::NEG_Z);
-    compare(subject, "straight at the centre", sphere, ray, Some(3.0))
+    compare(subject, "straight at the centre", (sphere, ray), Some(3.0))
 }
 
-fn past(subject: &Subject) -> Result<(), Mismatch> {
+fn past(subject: &Subject) -> Verdict {
     let (sphere, ray) = aside(10.0);
     let sphere = Sphere { radius: 20.0, ..sphere };
-    compare(subject, "the centre is 21 beside the ray", sphere, ray, None)
+    compare(subject, "the centre is 21 beside the ray", (sphere, ray), None)
 }
 
-fn any_length(subject: &Subject) -> Result<(), Mismatch> {
-    let (sphere, ray) = aside(10.0);
-    compare(subject, "the direction has length 7", sphere, ray, Some(6.0))
+fn any_length(subject: &Subject) -> Verdict {
+    compare(subject, "the direction has length 7", aside(10.0), Some(6.0))
 }
 
-fn inside(subject: &Subject) -> Result<(), Mismatch> {
-    let (sphere, ray) = aside(1.0);
-    compare(subject, "from inside, towards the far wall", sphere, ray, Some(5.0))?;
-    let (sphere, ray) = aside(-1.0);
-    compare(subject, "from inside, towards the near wall", sphere, ray, Some(3.0))?;
+fn inside(subject: &Subject) -> Verdict {
+    compare(subject, "from inside, towards the far wall", aside(1.0), Some(5.0))?;
+    compare(subject, "from inside, towards the near wall", aside(-1.0), Some(3.0))?;
     let (sphere, ray) = aside(0.0);
-    compare(subject, "from inside, F·D = 0", sphere, ray, Some(4.0))?;
+    compare(subject, "from inside, F·D = 0", (sphere, ray), Some(4.0))?;
     let ray = Ray::new(sphere.center, ray.direction);
-    compare(subject, "from the centre, F = 0", sphere, ray, Some(5.0))
+    compare(subject, "from the centre, F = 0", (sphere, ray), Some(5.0))
 }
 
-fn behind(subject: &Subject) -> Result<(), Mismatch> {
-    let (sphere, ray) = aside(-10.0);
-    compare(subject, "the ray leads away from the sphere", sphere, ray, None)
+fn behind(subject: &Subject) -> Verdict {
+    compare(subject, "the ray leads away from the sphere", aside(-10.0), None)
 }
 
-fn tangent(subject: &Subject) -> Result<(), Mismatch> {
+fn tangent(subject: &Subject) -> Verdict {
     let sphere = Sphere { center: DVec3::new(0.0, 3.0, -5.0), radius: 3.0 };
     let ray = Ray::new(DVec3::ZERO, DVec3::NEG_Z);
-    compare(subject, "just touching", sphere, ray, Some(5.0))
+    compare(subject, "just touching", (sphere, ray), Some(5.0))
 }
 
 /// Whether t is right to all its digits but the last few, in all of some cases. Which of them fail depends on the
@@ -316,29 +228,25 @@ fn precise(
     subject: &Subject,
     what: &str,
     mut cases: impl Iterator<Item = (Sphere, Ray, f64)>,
-) -> Result<(), Mismatch> {
+) -> Verdict {
     let is_right = |(sphere, ray, exact): (Sphere, Ray, f64)| {
         let t = (subject.ray_sphere)(&sphere, &ray);
         t.is_some_and(|t| (t / exact - 1.0).abs() < 1e-13)
     };
-    if cases.all(is_right) {
-        return Ok(());
-    }
-    Err(Mismatch::new(
-        what,
-        "for some of them t is off by more than a part in 10¹³, or the sphere is lost",
-        "all digits of t, but for the last rounding",
-    ))
+    ensure(cases.all(is_right), || {
+        let got = "for some of them t is off by more than a part in 10¹³, or the sphere is lost";
+        Mismatch::new(what, got, "all digits of t, but for the last rounding")
+    })
 }
 
-fn far(subject: &Subject) -> Result<(), Mismatch> {
+fn far(subject: &Subject) -> Verdict {
     let cases = (0..48).map(|turn| far_sphere(1e8, turn));
     precise(subject, "spheres of radius 3.5, 2·10⁷ radii away, in 48 directions", cases)
 }
 
 /// P = 2²⁰ (2, 3, 6) is a point of a sphere of radius 7·2²⁰ around 0, and a ray along D = (1, −2, −3)/7 that starts
 /// at P − 7 k D meets it there at t = 7 k. F·F − r² is a difference of integers, without rounding.
-fn huge(subject: &Subject) -> Result<(), Mismatch> {
+fn huge(subject: &Subject) -> Verdict {
     let size = f64::from(1 << 20);
     let sphere = Sphere { center: DVec3::ZERO, radius: 7.0 * size };
     let cases = (1..=48).map(|k| {
@@ -350,20 +258,16 @@ fn huge(subject: &Subject) -> Result<(), Mismatch> {
 }
 
 /// The whole of [`aside`] 2⁻³⁰ times as large, but for the direction.
-fn tiny(subject: &Subject) -> Result<(), Mismatch> {
+fn tiny(subject: &Subject) -> Verdict {
     let (sphere, ray) = aside(10.0);
     let size = 0.5_f64.powi(30);
     let sphere = Sphere { center: size * sphere.center, radius: size * sphere.radius };
     let got = (subject.ray_sphere)(&sphere, &ray).map(|t| t / size);
-    let case = || {
-        let (center, radius) = (sphere.center.shown(), sphere.radius.shown());
-        format!("t · 2³⁰: sphere around {center} of radius {radius}; ray: {}", ray.shown())
-    };
-    within(1e-12, case, &got, &Some(6.0))
+    within(1e-12, || case("t · 2³⁰", &sphere, &ray), &got, &Some(6.0))
 }
 
 /// Points of a sphere as they are rounded, and a direction for each: outwards, and back across the sphere.
-fn on_sphere(subject: &Subject) -> Result<(), Mismatch> {
+fn on_sphere(subject: &Subject) -> Verdict {
     let mut random = Uniform::new(3, 0, 0);
     // The noise grows as the sphere does, whose size is a power of 2, so that nothing else changes.
     for size in [1.0, 4096.0, 1.0 / 4096.0].into_iter().cycle().take(1500) {

@@ -5,7 +5,7 @@ use lancer_core::geometry::{Ray, leave_surface};
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::scene::MaterialId;
 use lancer_core::world::SurfacePoint;
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, within};
+use lancer_exercise::{Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, slips, within};
 
 use super::Subject;
 use super::reference::shadow_ray;
@@ -18,7 +18,6 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         name: "shadow-ray",
         title: "The shadow ray leaves the surface",
         slide: "Modèle local : calcul des ombres portées",
-        file: "e04_shadow_ray.rs",
         stub: include_str!("../../stubs/e04_shadow_ray.rs"),
         functions: &["shadow_ray"],
         minutes: 15,
@@ -54,147 +53,52 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "shadows far from the origin", run: far_away },
         Check { name: "shadows in a tiny scene", run: tiny },
     ],
-    mutants: &[
-        Mutant {
-            says: "the origin is not moved: rounding left the point on either side of the surface, and half of \
-                   the shadow rays meet the surface that they leave (acne)",
-            caught_by: "shadows far from the origin",
-            mistake: |subject| {
-                subject.shadow_ray = |surface, lamp| shadow_ray(&exact(surface), lamp);
-            },
-        },
-        Mutant {
-            says: "a fixed epsilon of 10⁻⁴: far from the origin it is less than rounding, and what is nearer than \
-                   that to the surface casts no shadow",
-            caught_by: "shadows in a tiny scene",
-            mistake: |subject| {
-                subject.shadow_ray = |surface, lamp| epsilon_shadow_ray(surface, lamp, 1e-4);
-            },
-        },
-        Mutant {
-            says: "the origin is always moved along N: for a lamp behind the surface that is the wrong side",
-            caught_by: "a lamp behind the surface",
-            mistake: |subject| {
-                subject.shadow_ray = |surface, lamp| {
-                    let (start, n) = (start(surface, lamp), surface.geometric_normal);
-                    aimed(leave_surface(start, surface.error, n, n), lamp)
-                };
-            },
-        },
-        Mutant {
-            says: "N · error without the absolute values: components of N below 0 make the move shorter than the \
-                   box of error",
-            caught_by: "a slanted surface, by hand",
-            mistake: |subject| {
-                subject.shadow_ray = |surface, lamp| {
-                    let (start, n) = (start(surface, lamp), surface.geometric_normal);
-                    let distance = n.dot(surface.error).copysign(n.dot(lamp - start));
-                    aimed(start + distance * n, lamp)
-                };
-            },
-        },
-        Mutant {
-            says: "the origin is moved by the whole length of error: just far enough along N is |N| · error",
-            caught_by: "a level floor, by hand",
-            mistake: |subject| {
-                subject.shadow_ray = |surface, lamp| {
-                    let (start, n) = (start(surface, lamp), surface.geometric_normal);
-                    let distance = surface.error.length().copysign(n.dot(lamp - start));
-                    aimed(start + distance * n, lamp)
-                };
-            },
-        },
-        Mutant {
-            says: "error is added to the point: that moves it along the diagonal of the box, not along N",
-            caught_by: "a level floor, by hand",
-            mistake: |subject| {
-                subject.shadow_ray =
-                    |surface, lamp| aimed(start(surface, lamp) + surface.error, lamp);
-            },
-        },
-        Mutant {
-            says: "the direction is normalised: t = 1 is then a point at distance 1, not the lamp",
-            caught_by: "a level floor, by hand",
-            mistake: |subject| {
-                subject.shadow_ray = |surface, lamp| {
-                    let ray = shadow_ray(surface, lamp);
-                    Ray::new(ray.origin, ray.direction.normalize())
-                };
-            },
-        },
-        Mutant {
-            says: "the direction leads from the surface point to the lamp: it must lead there from the moved \
-                   origin, or t = 1 is beside the lamp",
-            caught_by: "a level floor, by hand",
-            mistake: |subject| {
-                subject.shadow_ray = |surface, lamp| {
-                    let origin = shadow_ray(surface, lamp).origin;
-                    Ray::new(origin, lamp - surface.position)
-                };
-            },
-        },
-        Mutant {
-            says: "the direction leads away from the lamp: lamp − origin points at it",
-            caught_by: "a level floor, by hand",
-            mistake: |subject| {
-                subject.shadow_ray = |surface, lamp| {
-                    let ray = shadow_ray(surface, lamp);
-                    Ray::new(ray.origin, -ray.direction)
-                };
-            },
-        },
-        Mutant {
-            says: "`lifted` is not used: near the terminator the flat triangles of a smooth mesh shade each other",
-            caught_by: "a smooth mesh starts lifted",
-            mistake: |subject| {
-                subject.shadow_ray = |surface, lamp| {
-                    shadow_ray(&SurfacePoint { lifted: surface.position, ..*surface }, lamp)
-                };
-            },
-        },
-        Mutant {
-            says: "the ray always starts at `lifted`: for a lamp on the inside the mesh bulges away from it, so \
-                   start at `position` there",
-            caught_by: "from inside a smooth mesh it is not lifted",
-            mistake: |subject| {
-                subject.shadow_ray = |surface, lamp| {
-                    let n = surface.geometric_normal;
-                    let toward = lamp - surface.lifted;
-                    aimed(leave_surface(surface.lifted, surface.error, n, toward), lamp)
-                };
-            },
-        },
-        Mutant {
-            says: "the ray starts at `position` as it comes: rounding left that point on either side of the \
-                   surface (acne), and a smooth mesh starts at `lifted`",
-            caught_by: "shadows far from the origin",
-            mistake: |subject| {
-                subject.shadow_ray = |surface, lamp| aimed(surface.position, lamp);
-            },
-        },
-        Mutant {
-            says: "the origin is moved along the shading normal: the surface itself lies across the geometric one",
-            caught_by: "a smooth mesh starts lifted",
-            mistake: |subject| {
-                subject.shadow_ray = |surface, lamp| {
-                    let geometric_normal = surface.shading_normal;
-                    shadow_ray(&SurfacePoint { geometric_normal, ..*surface }, lamp)
-                };
-            },
-        },
-        Mutant {
-            says: "N and error are multiplied component by component: the move must be along N, by |N| · error, \
-                   which is one number",
-            caught_by: "a slanted surface, by hand",
-            mistake: |subject| {
-                subject.shadow_ray = |surface, lamp| {
-                    let (start, n) = (start(surface, lamp), surface.geometric_normal);
-                    let side = 1.0_f64.copysign(n.dot(lamp - start));
-                    aimed(start + side * surface.error * n, lamp)
-                };
-            },
-        },
-    ],
+    slips: slips! {
+        shadow_ray(surface, lamp):
+        "the origin is not moved: rounding left the point on either side of the surface, and half of the shadow \
+         rays meet the surface that they leave (acne)":
+            "shadows far from the origin" catches
+                shadow_ray(&SurfacePoint { error: DVec3::ZERO, ..*surface }, lamp);
+        "a fixed epsilon of 10⁻⁴: far from the origin it is less than rounding, and what is nearer than that to \
+         the surface casts no shadow":
+            "shadows in a tiny scene" catches epsilon_shadow_ray(surface, lamp, 1e-4);
+        "the origin is always moved along N: for a lamp behind the surface that is the wrong side":
+            "a lamp behind the surface" catches
+                left(surface, start(surface, lamp), surface.geometric_normal, lamp);
+        "N · error without the absolute values: components of N below 0 make the move shorter than the box of \
+         error":
+            "a slanted surface, by hand" catches
+                moved(surface, |n, error| n.dot(error).abs() * n, lamp);
+        "the origin is moved by the whole length of error: just far enough along N is |N| · error":
+            "a level floor, by hand" catches moved(surface, |n, error| error.length() * n, lamp);
+        "error is added to the point: that moves it along the diagonal of the box, not along N":
+            "a level floor, by hand" catches aimed(start(surface, lamp) + surface.error, lamp);
+        "the direction is normalised: t = 1 is then a point at distance 1, not the lamp":
+            "a level floor, by hand" catches turned(surface, DVec3::normalize, lamp);
+        "the direction leads from the surface point to the lamp: it must lead there from the moved origin, or \
+         t = 1 is beside the lamp":
+            "a level floor, by hand" catches turned(surface, |_| lamp - surface.position, lamp);
+        "the direction leads away from the lamp: lamp − origin points at it":
+            "a level floor, by hand" catches turned(surface, |direction| -direction, lamp);
+        "`lifted` is not used: near the terminator the flat triangles of a smooth mesh shade each other":
+            "a smooth mesh starts lifted" catches
+                shadow_ray(&SurfacePoint { lifted: surface.position, ..*surface }, lamp);
+        "the ray always starts at `lifted`: for a lamp on the inside the mesh bulges away from it, so start at \
+         `position` there":
+            "from inside a smooth mesh it is not lifted" catches
+                left(surface, surface.lifted, lamp - surface.lifted, lamp);
+        "the ray starts at `position` as it comes: rounding left that point on either side of the surface (acne), \
+         and a smooth mesh starts at `lifted`":
+            "shadows far from the origin" catches aimed(surface.position, lamp);
+        "the origin is moved along the shading normal: the surface itself lies across the geometric one":
+            "a smooth mesh starts lifted" catches {
+                let geometric_normal = surface.shading_normal;
+                shadow_ray(&SurfacePoint { geometric_normal, ..*surface }, lamp)
+            };
+        "N and error are multiplied component by component: the move must be along N, by |N| · error, which is one \
+         number":
+            "a slanted surface, by hand" catches moved(surface, |n, error| error * n, lamp);
+    },
     draw,
     explain: None,
 };
@@ -208,9 +112,22 @@ fn aimed(origin: DVec3, lamp: DVec3) -> Ray {
     Ray::new(origin, lamp - origin)
 }
 
-/// The point as if it were known without an error.
-fn exact(surface: &SurfacePoint) -> SurfacePoint {
-    SurfacePoint { error: DVec3::ZERO, ..*surface }
+/// The right ray, but for its direction.
+fn turned(surface: &SurfacePoint, turn: impl Fn(DVec3) -> DVec3, lamp: DVec3) -> Ray {
+    let ray = shadow_ray(surface, lamp);
+    Ray::new(ray.origin, turn(ray.direction))
+}
+
+/// The right ray, but for how far its start is moved to the lamp's side, given N and the error.
+fn moved(surface: &SurfacePoint, by: impl Fn(DVec3, DVec3) -> DVec3, lamp: DVec3) -> Ray {
+    let (start, n) = (start(surface, lamp), surface.geometric_normal);
+    let side = 1.0_f64.copysign(n.dot(lamp - start));
+    aimed(start + side * by(n, surface.error), lamp)
+}
+
+/// The ray from a start that is moved to the side of `toward`.
+fn left(surface: &SurfacePoint, start: DVec3, toward: DVec3, lamp: DVec3) -> Ray {
+    aimed(leave_surface(start, surface.error, surface.geometric_normal, toward), lamp)
 }
 
 /// A flat surface; the errors of these checks are as large as no real one, so that they can be seen.
@@ -226,12 +143,7 @@ fn flat(position: DVec3, error: DVec3, n: DVec3) -> SurfacePoint {
 }
 
 /// Whether the ray starts at `origin` and leads to the lamp from there.
-fn compare(
-    subject: &Subject,
-    surface: &SurfacePoint,
-    lamp: DVec3,
-    origin: DVec3,
-) -> Result<(), Mismatch> {
+fn compare(subject: &Subject, surface: &SurfacePoint, lamp: DVec3, origin: DVec3) -> Verdict {
     let case = |what: &str| {
         let SurfacePoint { position, error, geometric_normal: n, shading_normal, lifted, .. } =
             surface;
@@ -255,7 +167,7 @@ fn compare(
 }
 
 /// |N| · error is the error's y.
-fn level(subject: &Subject) -> Result<(), Mismatch> {
+fn level(subject: &Subject) -> Verdict {
     let surface = flat(DVec3::new(1.0, 2.0, 3.0), DVec3::new(0.25, 0.5, 0.125), DVec3::Y);
     compare(subject, &surface, DVec3::new(5.0, 8.5, -1.0), DVec3::new(1.0, 2.5, 3.0))
 }
@@ -266,12 +178,12 @@ const ERROR: DVec3 = DVec3::new(0.7, 1.4, 0.35);
 const REACH: f64 = 1.1;
 const POINT: DVec3 = DVec3::new(-2.0, 1.0, 4.0);
 
-fn slanted(subject: &Subject) -> Result<(), Mismatch> {
+fn slanted(subject: &Subject) -> Verdict {
     let surface = flat(POINT, ERROR, SLANTED);
     compare(subject, &surface, DVec3::new(3.0, 2.0, 9.0), POINT + REACH * SLANTED)
 }
 
-fn lamp_behind(subject: &Subject) -> Result<(), Mismatch> {
+fn lamp_behind(subject: &Subject) -> Verdict {
     let surface = flat(POINT, ERROR, SLANTED);
     compare(subject, &surface, DVec3::new(-3.0, 2.0, -5.0), POINT - REACH * SLANTED)
 }
@@ -285,14 +197,14 @@ fn smooth() -> SurfacePoint {
     }
 }
 
-fn lifted(subject: &Subject) -> Result<(), Mismatch> {
+fn lifted(subject: &Subject) -> Verdict {
     let surface = smooth();
     let lamps = [DVec3::new(3.0, 2.0, 9.0), DVec3::new(7.0, 5.0, 5.0)];
     let origin = surface.lifted + REACH * SLANTED;
     lamps.into_iter().try_for_each(|lamp| compare(subject, &surface, lamp, origin))
 }
 
-fn from_inside(subject: &Subject) -> Result<(), Mismatch> {
+fn from_inside(subject: &Subject) -> Verdict {
     let lamps = [DVec3::new(-3.0, 2.0, -5.0), DVec3::new(-2.5, 0.5, 3.0)];
     let origin = POINT - REACH * SLANTED;
     lamps.into_iter().try_for_each(|lamp| compare(subject, &smooth(), lamp, origin))
@@ -301,24 +213,16 @@ fn from_inside(subject: &Subject) -> Result<(), Mismatch> {
 /// How many of its sizes the scene of plate 0.2 stands away from the origin here.
 const AWAY: f64 = 1e6;
 
-fn far_away(subject: &Subject) -> Result<(), Mismatch> {
-    shadows(
-        subject,
-        1e3,
-        "a floor of 2000 × 1600 under six sheets, a million times its size from the origin",
-    )
+fn far_away(subject: &Subject) -> Verdict {
+    shadows(subject, 1e3, "2000 × 1600")
 }
 
-fn tiny(subject: &Subject) -> Result<(), Mismatch> {
-    shadows(
-        subject,
-        1e-3,
-        "a floor of 0.0022 × 0.0016 under six sheets, a million times its size from the origin",
-    )
+fn tiny(subject: &Subject) -> Verdict {
+    shadows(subject, 1e-3, "0.0022 × 0.0016")
 }
 
 /// Whether all points of the floor are dark and lit as plane geometry has it.
-fn shadows(subject: &Subject, scale: f64, case: &str) -> Result<(), Mismatch> {
+fn shadows(subject: &Subject, scale: f64, size: &str) -> Verdict {
     let site = Site::new(scale, AWAY, ImageSize::new(48, 32));
     let got = match site.wrong(&site.dark(subject.shadow_ray)) {
         [0, 0] => return Ok(()),
@@ -328,6 +232,8 @@ fn shadows(subject: &Subject, scale: f64, case: &str) -> Result<(), Mismatch> {
             "points are dark though the lamp shines there (acne), and others lit though a sheet stands before it (leaks)"
         }
     };
+    let case =
+        format!("a floor of {size} under six sheets, a million times its size from the origin");
     Err(Mismatch::new(case, got, "the sheets' shadows, and nothing else"))
 }
 

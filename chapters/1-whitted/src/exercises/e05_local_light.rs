@@ -5,11 +5,11 @@ use lancer_core::Rgb;
 use lancer_core::illumination::{Reflectance, attenuation};
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::optics::reflect;
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, within};
+use lancer_exercise::{Card, Check, Exercise, Shown, Solution, Verdict, slips, within};
 use lancer_lesson::scenes::parsed;
 
 use super::reference::local_light;
-use super::{Subject, drawn};
+use super::{Lit, Subject, drawn};
 
 pub const EXERCISE: Exercise<Subject> = Exercise {
     card: Card {
@@ -17,7 +17,6 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         name: "local-light",
         title: "One lamp's light on a surface",
         slide: "Modèle d'éclairage, modèle local",
-        file: "e05_local_light.rs",
         stub: include_str!("../../stubs/e05_local_light.rs"),
         functions: &["local_light"],
         minutes: 15,
@@ -52,299 +51,173 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "the eye far from the mirror direction", run: far_from_mirror },
         Check { name: "a lamp behind the surface", run: lamp_behind },
     ],
-    mutants: &[
-        Mutant {
-            says: "1/d in place of 1/d²: light spreads over an area",
-            caught_by: "a matte surface that faces the lamp",
-            mistake: |subject| {
-                subject.local_light = |i, visible, d, reflectance, n, l, v| {
-                    d * local_light(i, visible, d, reflectance, n, l, v)
-                };
-            },
-        },
-        Mutant {
-            says: "1/d² is missing: a lamp far away shines as bright as one nearby",
-            caught_by: "a matte surface that faces the lamp",
-            mistake: |subject| {
-                subject.local_light = |i, visible, d, reflectance, n, l, v| {
-                    d * d * local_light(i, visible, d, reflectance, n, l, v)
-                };
-            },
-        },
-        Mutant {
-            says: "1/d² weakens the matte part alone: the brackets hold the highlight too",
-            caught_by: "a highlight beside the mirror direction",
-            mistake: |subject| {
-                subject.local_light = |i, visible, d, reflectance, n, l, v| {
-                    let matte = Reflectance { specular: Rgb::ZERO, ..*reflectance };
-                    let glossy = Reflectance { diffuse: Rgb::ZERO, ..*reflectance };
-                    local_light(i, visible, d, &matte, n, l, v)
-                        + d * d * local_light(i, visible, d, &glossy, n, l, v)
-                };
-            },
-        },
-        Mutant {
-            says: "vis is forgotten: a lamp behind something shines nevertheless",
-            caught_by: "a lamp in the shadow",
-            mistake: |subject| {
-                subject.local_light =
-                    |i, _, d, reflectance, n, l, v| local_light(i, true, d, reflectance, n, l, v);
-            },
-        },
-        Mutant {
-            says: "N·L is not taken as 0 where it is negative: a lamp behind the surface takes light away",
-            caught_by: "a lamp behind the surface",
-            mistake: |subject| {
-                subject.local_light = |i, visible, d, reflectance, n, l, v| {
-                    let highlight = if n.dot(l) > 0.0 {
-                        lobe(r_dot_v(n, l, v).max(0.0), reflectance)
-                    } else {
-                        Rgb::ZERO
-                    };
-                    i * attenuation(visible, d) * (reflectance.diffuse * n.dot(l) + highlight)
-                };
-            },
-        },
-        Mutant {
-            says: "a lamp behind the surface makes a highlight: where N·L is negative both parts are 0",
-            caught_by: "a lamp behind the surface",
-            mistake: |subject| {
-                subject.local_light = |i, visible, d, reflectance, n, l, v| {
-                    let matte = reflectance.diffuse * n.dot(l).max(0.0);
-                    let highlight = lobe(r_dot_v(n, l, v).max(0.0), reflectance);
-                    i * attenuation(visible, d) * (matte + highlight)
-                };
-            },
-        },
-        Mutant {
-            says: "nothing is taken as 0 where it is negative: neither N·L nor R·V",
-            caught_by: "a lamp behind the surface",
-            mistake: |subject| {
-                subject.local_light = |i, visible, d, reflectance, n, l, v| {
-                    let highlight = lobe(r_dot_v(n, l, v), reflectance);
-                    i * attenuation(visible, d) * (reflectance.diffuse * n.dot(l) + highlight)
-                };
-            },
-        },
-        Mutant {
-            says: "R·V is not taken as 0 where it is negative: an even power of it lights the wrong side",
-            caught_by: "the eye far from the mirror direction",
-            mistake: |subject| {
-                subject.local_light = |i, visible, d, reflectance, n, l, v| {
-                    if n.dot(l) <= 0.0 {
-                        return Rgb::ZERO;
-                    }
-                    let highlight = lobe(r_dot_v(n, l, v), reflectance);
-                    i * attenuation(visible, d) * (reflectance.diffuse * n.dot(l) + highlight)
-                };
-            },
-        },
-        Mutant {
-            says: "the highlight is multiplied by N·L: in the slide's formula only ρ_d is",
-            caught_by: "a highlight beside the mirror direction",
-            mistake: |subject| {
-                subject.local_light = |i, visible, d, reflectance, n, l, v| {
-                    let specular = reflectance.specular * n.dot(l).max(0.0);
-                    local_light(i, visible, d, &Reflectance { specular, ..*reflectance }, n, l, v)
-                };
-            },
-        },
-        Mutant {
-            says: "N·H in place of R·V: that is Blinn's highlight, wider than the slide's",
-            caught_by: "a highlight beside the mirror direction",
-            mistake: |subject| {
-                subject.local_light = |i, visible, d, reflectance, n, l, v| {
-                    if n.dot(l) <= 0.0 {
-                        return Rgb::ZERO;
-                    }
-                    let highlight = lobe(n.dot((l + v).normalize()), reflectance);
-                    i * attenuation(visible, d) * (reflectance.diffuse * n.dot(l) + highlight)
-                };
-            },
-        },
-        Mutant {
-            says: "R leads into the surface: L points at the lamp, so the light arrives along −L, and \
-                   R = 2 (N·L) N − L",
-            caught_by: "a highlight beside the mirror direction",
-            mistake: |subject| {
-                subject.local_light = |i, visible, d, reflectance, n, l, v| {
-                    if n.dot(l) <= 0.0 {
-                        return Rgb::ZERO;
-                    }
-                    let highlight = lobe((-r_dot_v(n, l, v)).max(0.0), reflectance);
-                    i * attenuation(visible, d) * (reflectance.diffuse * n.dot(l) + highlight)
-                };
-            },
-        },
-        Mutant {
-            says: "the exponent multiplies: (R·V)ⁿ is a power",
-            caught_by: "a highlight beside the mirror direction",
-            mistake: |subject| {
-                subject.local_light = |i, visible, d, reflectance, n, l, v| {
-                    let specular = reflectance.specular * reflectance.shininess;
-                    let linear = Reflectance { specular, shininess: 1.0, ..*reflectance };
-                    local_light(i, visible, d, &linear, n, l, v)
-                };
-            },
-        },
-        Mutant {
-            says: "the power is taken of ρ_s (R·V): only R·V is raised to n",
-            caught_by: "a highlight beside the mirror direction",
-            mistake: |subject| {
-                subject.local_light = |i, visible, d, reflectance, n, l, v| {
-                    let specular = reflectance.specular.powf(reflectance.shininess);
-                    local_light(i, visible, d, &Reflectance { specular, ..*reflectance }, n, l, v)
-                };
-            },
-        },
-        Mutant {
-            says: "L and V are exchanged: the matte part depends on the lamp's direction, not on the eye's",
-            caught_by: "a matte surface at a slant",
-            mistake: |subject| {
-                subject.local_light = |i, visible, d, reflectance, n, l, v| {
-                    local_light(i, visible, d, reflectance, n, v, l)
-                };
-            },
-        },
-        Mutant {
-            says: "absolute values are taken: what is negative is behind, and counts as 0",
-            caught_by: "the eye far from the mirror direction",
-            mistake: |subject| {
-                subject.local_light = |i, visible, d, reflectance, n, l, v| {
-                    let highlight = lobe(r_dot_v(n, l, v).abs(), reflectance);
-                    i * attenuation(visible, d) * (reflectance.diffuse * n.dot(l).abs() + highlight)
-                };
-            },
-        },
-    ],
+    slips: slips! {
+        local_light(lit):
+        "1/d in place of 1/d²: light spreads over an area":
+            "a matte surface that faces the lamp" catches lit.distance * local_light(lit);
+        "1/d² is missing: a lamp far away shines as bright as one nearby":
+            "a matte surface that faces the lamp" catches lit.distance.powi(2) * local_light(lit);
+        "1/d² weakens the matte part alone: the brackets hold the highlight too":
+            "a highlight beside the mirror direction" catches {
+                let matte = with_reflectance(lit, |r| r.specular = Rgb::ZERO);
+                let glossy = with_reflectance(lit, |r| r.diffuse = Rgb::ZERO);
+                matte + lit.distance.powi(2) * glossy
+            };
+        "vis is forgotten: a lamp behind something shines nevertheless":
+            "a lamp in the shadow" catches local_light(&Lit { visible: true, ..*lit });
+        "N·L is not taken as 0 where it is negative: a lamp behind the surface takes light away":
+            "a lamp behind the surface" catches
+                with_cosines(lit, n_l(lit), if n_l(lit) > 0.0 { r_v(lit).max(0.0) } else { 0.0 });
+        "a lamp behind the surface makes a highlight: where N·L is negative both parts are 0":
+            "a lamp behind the surface" catches
+                with_cosines(lit, n_l(lit).max(0.0), r_v(lit).max(0.0));
+        "nothing is taken as 0 where it is negative: neither N·L nor R·V":
+            "a lamp behind the surface" catches with_cosines(lit, n_l(lit), r_v(lit));
+        "R·V is not taken as 0 where it is negative: an even power of it lights the wrong side":
+            "the eye far from the mirror direction" catches with_highlight(lit, r_v(lit));
+        "the highlight is multiplied by N·L: in the slide's formula only ρ_d is":
+            "a highlight beside the mirror direction" catches
+                with_reflectance(lit, |r| r.specular *= n_l(lit).max(0.0));
+        "N·H in place of R·V: that is Blinn's highlight, wider than the slide's":
+            "a highlight beside the mirror direction" catches
+                with_highlight(lit, lit.n.dot((lit.to_light + lit.to_eye).normalize()));
+        "R leads into the surface: L points at the lamp, so the light arrives along −L, and R = 2 (N·L) N − L":
+            "a highlight beside the mirror direction" catches
+                with_highlight(lit, (-r_v(lit)).max(0.0));
+        "the exponent multiplies: (R·V)ⁿ is a power":
+            "a highlight beside the mirror direction" catches with_reflectance(lit, |r| {
+                (r.specular, r.shininess) = (r.specular * r.shininess, 1.0);
+            });
+        "the power is taken of ρ_s (R·V): only R·V is raised to n":
+            "a highlight beside the mirror direction" catches
+                with_reflectance(lit, |r| r.specular = r.specular.powf(r.shininess));
+        "L and V are exchanged: the matte part depends on the lamp's direction, not on the eye's":
+            "a matte surface at a slant" catches
+                local_light(&Lit { to_light: lit.to_eye, to_eye: lit.to_light, ..*lit });
+        "absolute values are taken: what is negative is behind, and counts as 0":
+            "the eye far from the mirror direction" catches
+                with_cosines(lit, n_l(lit).abs(), r_v(lit).abs());
+    },
     draw,
     explain: None,
 };
 
+/// N·L, also where it is negative.
+fn n_l(lit: &Lit) -> f64 {
+    lit.n.dot(lit.to_light)
+}
+
 /// R·V, also where it is negative.
-fn r_dot_v(n: DVec3, to_light: DVec3, to_eye: DVec3) -> f64 {
-    reflect(-to_light, n).dot(to_eye)
+fn r_v(lit: &Lit) -> f64 {
+    reflect(-lit.to_light, lit.n).dot(lit.to_eye)
 }
 
-fn lobe(cosine: f64, reflectance: &Reflectance) -> Rgb {
-    reflectance.specular * cosine.powf(reflectance.shininess)
+/// The term with these in place of N·L and R·V.
+fn with_cosines(lit: &Lit, n_l: f64, r_v: f64) -> Rgb {
+    let Reflectance { diffuse, specular, shininess } = lit.reflectance;
+    let bracket = diffuse * n_l + specular * r_v.powf(shininess);
+    lit.intensity * attenuation(lit.visible, lit.distance) * bracket
 }
 
-/// A lamp's light on a surface, and from where it is seen.
-struct Lit {
-    intensity: Rgb,
-    visible: bool,
-    distance: f64,
-    reflectance: Reflectance,
-    n: DVec3,
-    to_light: DVec3,
-    to_eye: DVec3,
+/// The right term, but for R·V.
+fn with_highlight(lit: &Lit, r_v: f64) -> Rgb {
+    if n_l(lit) > 0.0 { with_cosines(lit, n_l(lit), r_v) } else { Rgb::ZERO }
 }
 
-impl Lit {
-    /// A lamp of intensity (4, 8, 12) two units above a floor of ρ_d = (0.5, 0.25, 1), seen from above.
-    const FLOOR: Self = Self {
-        intensity: Rgb::new(4.0, 8.0, 12.0),
-        visible: true,
-        distance: 2.0,
-        reflectance: Reflectance {
-            diffuse: Rgb::new(0.5, 0.25, 1.0),
-            specular: Rgb::ZERO,
-            shininess: 2.0,
-        },
-        n: DVec3::Y,
-        to_light: DVec3::Y,
-        to_eye: DVec3::Y,
+/// The right term of another surface.
+fn with_reflectance(lit: &Lit, change: impl Fn(&mut Reflectance)) -> Rgb {
+    let mut changed = *lit;
+    change(&mut changed.reflectance);
+    local_light(&changed)
+}
+
+/// A lamp of intensity (4, 8, 12) two units above a floor of ρ_d = (0.5, 0.25, 1), seen from above.
+const FLOOR: Lit = Lit {
+    intensity: Rgb::new(4.0, 8.0, 12.0),
+    visible: true,
+    distance: 2.0,
+    reflectance: Reflectance { diffuse: RHO, specular: Rgb::ZERO, shininess: 2.0 },
+    n: DVec3::Y,
+    to_light: DVec3::Y,
+    to_eye: DVec3::Y,
+};
+const RHO: Rgb = Rgb::new(0.5, 0.25, 1.0);
+/// A lamp of intensity 100 at distance 5, so that I/d² is 4; ρ_s = (0.5, 0.25, 1), n = 2.
+const GLOSSY: Lit = Lit {
+    intensity: Rgb::splat(100.0),
+    distance: 5.0,
+    reflectance: Reflectance { diffuse: Rgb::ZERO, specular: RHO, shininess: 2.0 },
+    ..FLOOR
+};
+
+fn compare(subject: &Subject, lit: &Lit, wanted: Rgb) -> Verdict {
+    let case = || {
+        let Lit { intensity, visible, distance, reflectance, n, to_light, to_eye } = lit;
+        format!(
+            "I {}, {}, d {}, ρ_d {}, ρ_s {}, exponent {}, N {}, L (to the lamp) {}, V (to the eye) {}",
+            intensity.shown(),
+            if *visible { "visible" } else { "not visible" },
+            distance.shown(),
+            reflectance.diffuse.shown(),
+            reflectance.specular.shown(),
+            reflectance.shininess.shown(),
+            n.shown(),
+            to_light.shown(),
+            to_eye.shown()
+        )
     };
-    /// A lamp of intensity 100 at distance 5, so that I/d² is 4; ρ_s = (0.5, 0.25, 1), n = 2.
-    const GLOSSY: Self = Self {
-        intensity: Rgb::splat(100.0),
-        distance: 5.0,
-        reflectance: Reflectance {
-            diffuse: Rgb::ZERO,
-            specular: Rgb::new(0.5, 0.25, 1.0),
-            shininess: 2.0,
-        },
-        ..Self::FLOOR
-    };
-
-    fn is(&self, subject: &Subject, wanted: Rgb) -> Result<(), Mismatch> {
-        let Self { intensity, visible, distance, reflectance, n, to_light, to_eye } = self;
-        let got = (subject.local_light)(
-            *intensity,
-            *visible,
-            *distance,
-            reflectance,
-            *n,
-            *to_light,
-            *to_eye,
-        );
-        let case = || {
-            format!(
-                "I {}, {}, d {}, ρ_d {}, ρ_s {}, exponent {}, N {}, L (to the lamp) {}, V (to the eye) {}",
-                intensity.shown(),
-                if *visible { "visible" } else { "not visible" },
-                distance.shown(),
-                reflectance.diffuse.shown(),
-                reflectance.specular.shown(),
-                reflectance.shininess.shown(),
-                n.shown(),
-                to_light.shown(),
-                to_eye.shown()
-            )
-        };
-        within(1e-12, case, &got, &wanted)
-    }
+    within(1e-12, case, &(subject.local_light)(lit), &wanted)
 }
 
-fn facing(subject: &Subject) -> Result<(), Mismatch> {
-    Lit::FLOOR.is(subject, Rgb::new(0.5, 0.5, 3.0))
+fn facing(subject: &Subject) -> Verdict {
+    compare(subject, &FLOOR, Rgb::new(0.5, 0.5, 3.0))
 }
 
 /// N·L = 0.8.
-fn slanted(subject: &Subject) -> Result<(), Mismatch> {
-    let to_light = DVec3::new(0.6, 0.8, 0.0);
-    Lit { to_light, ..Lit::FLOOR }.is(subject, Rgb::new(0.4, 0.4, 2.4))
+fn slanted(subject: &Subject) -> Verdict {
+    let lit = Lit { to_light: DVec3::new(0.6, 0.8, 0.0), ..FLOOR };
+    compare(subject, &lit, Rgb::new(0.4, 0.4, 2.4))
 }
 
-fn hidden(subject: &Subject) -> Result<(), Mismatch> {
-    Lit { visible: false, ..Lit::FLOOR }.is(subject, Rgb::ZERO)
+fn hidden(subject: &Subject) -> Verdict {
+    compare(subject, &Lit { visible: false, ..FLOOR }, Rgb::ZERO)
 }
 
 /// R = (−0.6, 0.8, 0), so R·V = 0.64, and its square times I/d² is 1.6384.
-fn highlight(subject: &Subject) -> Result<(), Mismatch> {
+fn highlight(subject: &Subject) -> Verdict {
     let (to_light, to_eye) = (DVec3::new(0.6, 0.8, 0.0), DVec3::new(0.0, 0.8, 0.6));
-    Lit { to_light, to_eye, ..Lit::GLOSSY }.is(subject, 1.6384 * Rgb::new(0.5, 0.25, 1.0))
+    compare(subject, &Lit { to_light, to_eye, ..GLOSSY }, 1.6384 * RHO)
 }
 
 /// N = (2, 3, 6)/7, L = (−2, 3, 6)/7, V = (6, 2, 3)/7: N·L = 41/49, R = (262, 99, 198)/343,
 /// R·V = 2364/2401.
-fn both(subject: &Subject) -> Result<(), Mismatch> {
+fn both(subject: &Subject) -> Verdict {
     let (diffuse, specular) = (Rgb::new(0.7, 0.3, 0.1), Rgb::new(0.2, 0.4, 0.6));
     let lit = Lit {
         reflectance: Reflectance { diffuse, specular, shininess: 3.0 },
         n: DVec3::new(2.0, 3.0, 6.0) / 7.0,
         to_light: DVec3::new(-2.0, 3.0, 6.0) / 7.0,
         to_eye: DVec3::new(6.0, 2.0, 3.0) / 7.0,
-        ..Lit::FLOOR
+        ..FLOOR
     };
     let cube = 2364.0 * 2364.0 * 2364.0 / (2401.0 * 2401.0 * 2401.0);
-    lit.is(subject, Rgb::new(1.0, 2.0, 3.0) * (diffuse * (41.0 / 49.0) + specular * cube))
+    let wanted = Rgb::new(1.0, 2.0, 3.0) * (diffuse * (41.0 / 49.0) + specular * cube);
+    compare(subject, &lit, wanted)
 }
 
 /// R = (−0.8, 0.6, 0), so R·V = −0.28: only ρ_d (N·L) = 0.6 (0.5, 0.25, 1) is left.
-fn far_from_mirror(subject: &Subject) -> Result<(), Mismatch> {
+fn far_from_mirror(subject: &Subject) -> Verdict {
     let slant = DVec3::new(0.8, 0.6, 0.0);
-    let reflectance = Reflectance { diffuse: Rgb::new(0.5, 0.25, 1.0), ..Lit::GLOSSY.reflectance };
-    let lit = Lit { reflectance, to_light: slant, to_eye: slant, ..Lit::GLOSSY };
-    lit.is(subject, Rgb::new(1.2, 0.6, 2.4))
+    let reflectance = Reflectance { diffuse: RHO, ..GLOSSY.reflectance };
+    let lit = Lit { reflectance, to_light: slant, to_eye: slant, ..GLOSSY };
+    compare(subject, &lit, Rgb::new(1.2, 0.6, 2.4))
 }
 
 /// N·L = −0.8 and R = (−0.6, −0.8, 0), so R·V = 0.352 though the lamp is below the surface.
-fn lamp_behind(subject: &Subject) -> Result<(), Mismatch> {
+fn lamp_behind(subject: &Subject) -> Verdict {
     let (to_light, to_eye) = (DVec3::new(0.6, -0.8, 0.0), DVec3::new(-0.96, 0.28, 0.0));
-    Lit { to_light, to_eye, ..Lit::FLOOR }.is(subject, Rgb::ZERO)?;
-    Lit { to_light, to_eye, ..Lit::GLOSSY }.is(subject, Rgb::ZERO)
+    compare(subject, &Lit { to_light, to_eye, ..FLOOR }, Rgb::ZERO)?;
+    compare(subject, &Lit { to_light, to_eye, ..GLOSSY }, Rgb::ZERO)
 }
 
 /// Balls of growing shininess in the light of a white lamp, from the upper left, and of a blue one behind
@@ -361,9 +234,11 @@ fn draw(subject: &Subject) -> Image {
             shininess: material.shininess,
         };
         let lamps = scene.lights.iter().map(|lamp| {
+            let (intensity, visible, to_eye) = (lamp.intensity, true, -ray.direction);
             let toward = lamp.position - surface.position;
-            let (d, l) = (toward.length(), toward.normalize());
-            (subject.local_light)(lamp.intensity, true, d, &reflectance, n, l, -ray.direction)
+            let (distance, to_light) = (toward.length(), toward.normalize());
+            let lit = Lit { intensity, visible, distance, reflectance, n, to_light, to_eye };
+            (subject.local_light)(&lit)
         });
         lamps.sum()
     })

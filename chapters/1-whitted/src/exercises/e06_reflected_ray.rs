@@ -3,7 +3,7 @@
 use glam::DVec3;
 use lancer_core::Rgb;
 use lancer_core::image::{Image, ImageSize};
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, within};
+use lancer_exercise::{Card, Check, Exercise, Shown, Solution, Verdict, slips, within};
 use lancer_lesson::scenes::parsed;
 
 use super::{Subject, drawn};
@@ -14,7 +14,6 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         name: "reflected-ray",
         title: "The mirror ray",
         slide: "Reflets spéculaires : calcul du rayon réfléchi",
-        file: "e06_reflected_ray.rs",
         stub: include_str!("../../stubs/e06_reflected_ray.rs"),
         functions: &["reflected_ray"],
         minutes: 10,
@@ -37,57 +36,42 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "any plane, by hand", run: by_hand },
         Check { name: "the normal may stand on either side", run: either_side },
     ],
-    mutants: &[
-        Mutant {
-            says: "the factor 2 is missing: the vector is projected onto the surface, not mirrored",
-            caught_by: "45 degrees onto a floor",
-            mistake: |subject| subject.reflected_ray = |v, n| v - n.dot(v) * n,
-        },
-        Mutant {
-            says: "V is taken as pointing away from the surface: the answer leads into it",
-            caught_by: "45 degrees onto a floor",
-            mistake: |subject| subject.reflected_ray = |v, n| 2.0 * n.dot(v) * n - v,
-        },
-        Mutant {
-            says: "N·V is made positive: that is right for one side of the surface only",
-            caught_by: "the normal may stand on either side",
-            mistake: |subject| subject.reflected_ray = |v, n| v + 2.0 * n.dot(v).abs() * n,
-        },
-        Mutant {
-            says: "the sign is wrong: twice the normal part is added where it should be taken away",
-            caught_by: "45 degrees onto a floor",
-            mistake: |subject| subject.reflected_ray = |v, n| v + 2.0 * n.dot(v) * n,
-        },
-    ],
+    slips: slips! {
+        reflected_ray(v, n):
+        "the factor 2 is missing: the vector is projected onto the surface, not mirrored":
+            "45 degrees onto a floor" catches v - n.dot(v) * n;
+        "V is taken as pointing away from the surface: the answer leads into it":
+            "45 degrees onto a floor" catches 2.0 * n.dot(v) * n - v;
+        "N·V is made positive: that is right for one side of the surface only":
+            "the normal may stand on either side" catches v + 2.0 * n.dot(v).abs() * n;
+        "the sign is wrong: twice the normal part is added where it should be taken away":
+            "45 degrees onto a floor" catches v + 2.0 * n.dot(v) * n;
+    },
     draw,
     explain: None,
 };
 
-fn case(incident: DVec3, n: DVec3) -> String {
-    format!("incident {} (towards the surface), N {}", incident.shown(), n.shown())
+fn compare(subject: &Subject, incident: DVec3, n: DVec3, wanted: DVec3) -> Verdict {
+    let case = || format!("incident {} (towards the surface), N {}", incident.shown(), n.shown());
+    within(1e-14, case, &(subject.reflected_ray)(incident, n), &wanted)
 }
 
-fn compare(subject: &Subject, incident: DVec3, n: DVec3, wanted: DVec3) -> Result<(), Mismatch> {
-    let got = (subject.reflected_ray)(incident, n);
-    within(1e-14, || case(incident, n), &got, &wanted)
-}
-
-fn floor(subject: &Subject) -> Result<(), Mismatch> {
+fn floor(subject: &Subject) -> Verdict {
     let incident = DVec3::new(0.6, -0.8, 0.0);
     compare(subject, incident, DVec3::Y, DVec3::new(0.6, 0.8, 0.0))
 }
 
 /// N = (2, 3, 6)/7 and V = (−1, −5, −4)/√42: N·V = −41/(7 √42), R = V + 82/49 (2, 3, 6)/√42.
-fn by_hand(subject: &Subject) -> Result<(), Mismatch> {
-    let n = DVec3::new(2.0, 3.0, 6.0) / 7.0;
-    let root = 42.0_f64.sqrt();
-    let wanted = DVec3::new(115.0, 1.0, 296.0) / (49.0 * root);
-    compare(subject, DVec3::new(-1.0, -5.0, -4.0) / root, n, wanted)
+fn by_hand(subject: &Subject) -> Verdict {
+    slanted(subject, 1.0)
 }
 
-fn either_side(subject: &Subject) -> Result<(), Mismatch> {
-    let n = DVec3::new(-2.0, -3.0, -6.0) / 7.0;
-    let root = 42.0_f64.sqrt();
+fn either_side(subject: &Subject) -> Verdict {
+    slanted(subject, -1.0)
+}
+
+fn slanted(subject: &Subject, side: f64) -> Verdict {
+    let (n, root) = (side * DVec3::new(2.0, 3.0, 6.0) / 7.0, 42.0_f64.sqrt());
     let wanted = DVec3::new(115.0, 1.0, 296.0) / (49.0 * root);
     compare(subject, DVec3::new(-1.0, -5.0, -4.0) / root, n, wanted)
 }

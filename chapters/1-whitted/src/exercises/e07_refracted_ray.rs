@@ -3,10 +3,13 @@
 use glam::DVec3;
 use lancer_core::Rgb;
 use lancer_core::image::{Image, ImageSize};
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, same, within};
+use lancer_exercise::{
+    Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, same, slips, within,
+};
 use lancer_lesson::scenes::parsed;
 
-use super::{Subject, drawn, reference};
+use super::reference::refracted_ray;
+use super::{Subject, drawn};
 
 pub const EXERCISE: Exercise<Subject> = Exercise {
     card: Card {
@@ -14,7 +17,6 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         name: "refracted-ray",
         title: "The refracted ray",
         slide: "Reflets spéculaires : calcul du rayon réfracté",
-        file: "e07_refracted_ray.rs",
         stub: include_str!("../../stubs/e07_refracted_ray.rs"),
         functions: &["refracted_ray"],
         minutes: 20,
@@ -46,75 +48,32 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "grazing", run: grazing },
         Check { name: "unit, in the plane, n₁ sin θ₁ = n₂ sin θ₂", run: descartes },
     ],
-    mutants: &[
-        Mutant {
-            says: "n₁ and n₂ are swapped: water bends the ray away from the normal, air towards it",
-            caught_by: "from air into water, by hand",
-            mistake: |subject| {
-                subject.refracted_ray = |v, n, n1, n2| reference::refracted_ray(v, n, n2, n1);
-            },
-        },
-        Mutant {
-            says: "total reflection is not noticed: the square root of a negative number is NaN",
-            caught_by: "total reflection",
-            mistake: |subject| {
-                subject.refracted_ray = |v, n, n1, n2| Some(along(v, n, n1 / n2, f64::sqrt));
-            },
-        },
-        Mutant {
-            says: "a negative cos² θ₂ is taken for 0: beyond the critical angle there is no refracted ray, not \
-                   even a grazing one",
-            caught_by: "total reflection",
-            mistake: |subject| {
-                subject.refracted_ray = |v, n, n1, n2| {
-                    Some(along(v, n, n1 / n2, |cos_squared| cos_squared.max(0.0).sqrt()))
-                };
-            },
-        },
-        Mutant {
-            says: "the part along N has the wrong sign: T = η V − (η cos θ₁ − cos θ₂) N",
-            caught_by: "from air into water, by hand",
-            mistake: |subject| {
-                subject.refracted_ray = |v, n, n1, n2| {
-                    let right = reference::refracted_ray(v, n, n1, n2)?;
-                    let scaled = n1 / n2 * v;
-                    Some(scaled - (right - scaled))
-                };
-            },
-        },
-        Mutant {
-            says: "cos θ₁ is taken as N·V, which is negative here: N stands against the ray",
-            caught_by: "equal indices: straight on",
-            mistake: |subject| {
-                subject.refracted_ray = |v, n, n1, n2| {
-                    let eta = n1 / n2;
-                    reference::refracted_ray(v, n, n1, n2).map(|t| t + 2.0 * eta * n.dot(v) * n)
-                };
-            },
-        },
-        Mutant {
-            says: "η cos θ₁ N is missing: η V still has its part along N, and − cos θ₂ N comes on top of it",
-            caught_by: "equal indices: straight on",
-            mistake: |subject| {
-                subject.refracted_ray = |v, n, n1, n2| {
-                    let eta = n1 / n2;
-                    reference::refracted_ray(v, n, n1, n2).map(|t| t + eta * n.dot(v) * n)
-                };
-            },
-        },
-        Mutant {
-            says: "the angles are scaled, θ₂ = η θ₁: that is right for small angles only, the law is about sines",
-            caught_by: "from air into water, by hand",
-            mistake: |subject| {
-                subject.refracted_ray = |v, n, n1, n2| {
-                    let cos1 = -n.dot(v);
-                    let (sin2, cos2) = (n1 / n2 * cos1.acos()).sin_cos();
-                    let along_surface = (v + cos1 * n).normalize_or_zero();
-                    (cos2 >= 0.0).then(|| sin2 * along_surface - cos2 * n)
-                };
-            },
-        },
-    ],
+    slips: slips! {
+        refracted_ray(v, n, n1, n2):
+        "n₁ and n₂ are swapped: water bends the ray away from the normal, air towards it":
+            "from air into water, by hand" catches refracted_ray(v, n, n2, n1);
+        "total reflection is not noticed: the square root of a negative number is NaN":
+            "total reflection" catches Some(along(v, n, n1 / n2, f64::sqrt));
+        "a negative cos² θ₂ is taken for 0: beyond the critical angle there is no refracted ray, not even a \
+         grazing one":
+            "total reflection" catches
+                Some(along(v, n, n1 / n2, |cos_squared| cos_squared.max(0.0).sqrt()));
+        "the part along N has the wrong sign: T = η V − (η cos θ₁ − cos θ₂) N":
+            "from air into water, by hand" catches
+                refracted_ray(v, n, n1, n2).map(|t| 2.0 * (n1 / n2) * v - t);
+        "cos θ₁ is taken as N·V, which is negative here: N stands against the ray":
+            "equal indices: straight on" catches
+                refracted_ray(v, n, n1, n2).map(|t| t + 2.0 * (n1 / n2) * n.dot(v) * n);
+        "η cos θ₁ N is missing: η V still has its part along N, and − cos θ₂ N comes on top of it":
+            "equal indices: straight on" catches
+                refracted_ray(v, n, n1, n2).map(|t| t + n1 / n2 * n.dot(v) * n);
+        "the angles are scaled, θ₂ = η θ₁: that is right for small angles only, the law is about sines":
+            "from air into water, by hand" catches {
+                let cos1 = -n.dot(v);
+                let (sin2, cos2) = (n1 / n2 * cos1.acos()).sin_cos();
+                (cos2 >= 0.0).then(|| sin2 * (v + cos1 * n).normalize_or_zero() - cos2 * n)
+            };
+    },
     draw,
     explain: None,
 };
@@ -156,40 +115,40 @@ fn compare(
     n1: f64,
     n2: f64,
     wanted: Option<(f64, f64)>,
-) -> Result<(), Mismatch> {
+) -> Verdict {
     let v = down(sin1, cos1);
     let got = (subject.refracted_ray)(v, N, n1, n2);
     let note = if wanted.is_none() { "; None is total reflection" } else { "" };
     within(1e-10, || case(v, N, n1, n2) + note, &got, &wanted.map(|(sin, cos)| down(sin, cos)))
 }
 
-fn straight_on(subject: &Subject) -> Result<(), Mismatch> {
+fn straight_on(subject: &Subject) -> Verdict {
     compare(subject, (0.6, 0.8), 1.0, 1.0, Some((0.6, 0.8)))?;
     compare(subject, (0.96, 0.28), 1.7, 1.7, Some((0.96, 0.28)))
 }
 
-fn along_normal(subject: &Subject) -> Result<(), Mismatch> {
+fn along_normal(subject: &Subject) -> Verdict {
     compare(subject, (0.0, 1.0), 1.0, 1.5, Some((0.0, 1.0)))?;
     compare(subject, (0.0, 1.0), 1.5, 1.0, Some((0.0, 1.0)))
 }
 
 /// Water has n = 4/3, so the sine 4/5 becomes 3/5.
-fn entering(subject: &Subject) -> Result<(), Mismatch> {
+fn entering(subject: &Subject) -> Verdict {
     compare(subject, (0.8, 0.6), 1.0, 4.0 / 3.0, Some((0.6, 0.8)))
 }
 
-fn leaving(subject: &Subject) -> Result<(), Mismatch> {
+fn leaving(subject: &Subject) -> Verdict {
     compare(subject, (0.6, 0.8), 4.0 / 3.0, 1.0, Some((0.8, 0.6)))
 }
 
 /// Out of water the sine 4/5 would become 16/15.
-fn total_reflection(subject: &Subject) -> Result<(), Mismatch> {
+fn total_reflection(subject: &Subject) -> Verdict {
     compare(subject, (0.8, 0.6), 4.0 / 3.0, 1.0, None)?;
     compare(subject, (0.96, 0.28), 1.5, 1.0, None)
 }
 
 /// Out of glass the last sine that passes is 2/3.
-fn critical_angle(subject: &Subject) -> Result<(), Mismatch> {
+fn critical_angle(subject: &Subject) -> Verdict {
     for (factor, passes) in [(1.0 - 1e-6, true), (1.0 + 1e-6, false)] {
         let sin1 = factor * 2.0 / 3.0;
         // cos² θ₂ = 1 − factor², as a product.
@@ -200,14 +159,14 @@ fn critical_angle(subject: &Subject) -> Result<(), Mismatch> {
 }
 
 /// A ray along the surface is bent to the critical angle: sin θ₂ = 1 / 1.5.
-fn grazing(subject: &Subject) -> Result<(), Mismatch> {
+fn grazing(subject: &Subject) -> Verdict {
     let cos1 = 1e-6;
     let sin2 = cos_of(cos1) * 2.0 / 3.0;
     compare(subject, (cos_of(cos1), cos1), 1.0, 1.5, Some((sin2, cos_of(sin2))))
 }
 
 /// The law and what it leaves open, for normals and directions in all octants.
-fn descartes(subject: &Subject) -> Result<(), Mismatch> {
+fn descartes(subject: &Subject) -> Verdict {
     let normals = [DVec3::new(1.0, 2.0, -2.0) / 3.0, DVec3::new(-4.0, -1.0, 8.0) / 9.0, -N];
     let indices = [(1.0, 1.5), (1.5, 1.0), (1.33, 2.4), (2.4, 1.33)];
     for n in normals {
@@ -227,7 +186,7 @@ fn descartes(subject: &Subject) -> Result<(), Mismatch> {
     Ok(())
 }
 
-fn judge(v: DVec3, n: DVec3, n1: f64, n2: f64, t: Option<DVec3>) -> Result<(), Mismatch> {
+fn judge(v: DVec3, n: DVec3, n1: f64, n2: f64, t: Option<DVec3>) -> Verdict {
     let case = |what: &str| format!("{what}: {}", case(v, n, n1, n2));
     let Some(t) = t else {
         return Err(Mismatch::new(case("whether a ray passes"), "None", "a direction"));

@@ -5,11 +5,11 @@ use lancer_core::Rgb;
 use lancer_core::geometry::Ray;
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::scene::Scene;
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, within};
+use lancer_exercise::{Card, Check, Exercise, Shown, Solution, Verdict, slips, within};
 use lancer_lesson::scenes::parsed;
 use lancer_whitted::{RayEnd, RayNode};
 
-use super::{Stage, Subject, from_eye, painted, reference, title_rays};
+use super::{Lit, Stage, Subject, from_eye, painted, reference, title_rays};
 use crate::scenes;
 
 pub const EXERCISE: Exercise<Subject> = Exercise {
@@ -18,7 +18,6 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         name: "lr",
         title: "The recursion LR",
         slide: "Algorithme",
-        file: "e08_lr.rs",
         stub: include_str!("../../stubs/e08_lr.rs"),
         functions: &["lr"],
         minutes: 45,
@@ -33,8 +32,9 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              enters if geometric_normal · direction < 0: then n₁ = 1 and n₂ is the material's; else they change \
              places.",
             "For each lamp: `let shadow = shadow_ray(&surface, lamp.position);`, distance = its direction's length, \
-             L = its direction / distance, then `local_light(lamp.intensity_towards(l), stage.is_lit(&shadow), \
-             distance, &stage.reflectance(&surface), n, l, -ray.direction)`. Then `match refracted_ray(…)`: `Some(t)` \
+             L = its direction / distance, then `local_light(&Lit { intensity: lamp.intensity_towards(l), visible: \
+             stage.is_lit(&shadow), distance, reflectance: stage.reflectance(&surface), n, to_light: l, to_eye: \
+             -ray.direction })`. Then `match refracted_ray(…)`: `Some(t)` \
              adds `material.k_t * lr(stage, &surface.spawn(t), depth + 1)`, `None` adds k_t to the k_s of the mirror \
              ray.",
         ],
@@ -60,91 +60,40 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "total reflection", run: total_reflection },
         Check { name: "the title picture", run: title },
     ],
-    mutants: &[
-        Mutant {
-            says: "the three components are added as on the slide's last line: k_s and k_t are missing",
-            caught_by: "a mirror shows the plate",
-            mistake: |subject| {
-                subject.lr = |stage, ray, depth| slipped(Slip::NoShares, stage, ray, depth);
-            },
-        },
-        Mutant {
-            says: "the ambient term ρ_d I_a is missing: shadows are black",
-            caught_by: "the ambient light",
-            mistake: |subject| {
-                subject.lr = |stage, ray, depth| slipped(Slip::NoAmbient, stage, ray, depth);
-            },
-        },
-        Mutant {
-            says: "the emission ε is missing: lamps shine, but are black themselves",
-            caught_by: "a plate that glows on one side",
-            mistake: |subject| {
-                subject.lr = |stage, ray, depth| slipped(Slip::NoEmission, stage, ray, depth);
-            },
-        },
-        Mutant {
-            says: "the emission is sent to both sides: only the outside of a surface glows",
-            caught_by: "a plate that glows on one side",
-            mistake: |subject| {
-                subject.lr = |stage, ray, depth| slipped(Slip::TwoSided, stage, ray, depth);
-            },
-        },
-        Mutant {
-            says: "a ray that meets nothing is black: « couleur de fond » is missing",
-            caught_by: "nothing is met",
-            mistake: |subject| {
-                subject.lr = |stage, ray, depth| slipped(Slip::NoBackground, stage, ray, depth);
-            },
-        },
-        Mutant {
-            says: "the recursion ends one bounce early: a ray at Max_Prof is still traced, one beyond is not",
-            caught_by: "Max_Prof",
-            mistake: |subject| {
-                subject.lr = |stage, ray, depth| slipped(Slip::EarlyEnd, stage, ray, depth);
-            },
-        },
-        Mutant {
-            says: "the depth does not grow: nothing ends the recursion between two mirrors",
-            caught_by: "two mirrors face each other",
-            mistake: |subject| {
-                subject.lr = |stage, ray, depth| slipped(Slip::SameDepth, stage, ray, depth);
-            },
-        },
-        Mutant {
-            says: "the shadow rays are not asked: every lamp is taken as visible",
-            caught_by: "a lamp behind a ball, and one beside it",
-            mistake: |subject| {
-                subject.lr = |stage, ray, depth| slipped(Slip::NoShadows, stage, ray, depth);
-            },
-        },
-        Mutant {
-            says: "V is the ray's own direction: the highlight needs the direction to the eye, −direction",
-            caught_by: "its highlight, in the mirror direction",
-            mistake: |subject| {
-                subject.lr = |stage, ray, depth| slipped(Slip::TowardsSurface, stage, ray, depth);
-            },
-        },
-        Mutant {
-            says: "every surface is entered: where the ray leaves the glass, n₁ and n₂ change places",
-            caught_by: "into a glass ball and out of it",
-            mistake: |subject| {
-                subject.lr = |stage, ray, depth| slipped(Slip::AlwaysEntering, stage, ray, depth);
-            },
-        },
-        Mutant {
-            says: "at total reflection the share k_t is lost: it goes to the mirror ray",
-            caught_by: "total reflection",
-            mistake: |subject| {
-                subject.lr = |stage, ray, depth| slipped(Slip::LostShare, stage, ray, depth);
-            },
-        },
-    ],
+    slips: slips! {
+        lr(stage, ray, depth):
+        "the three components are added as on the slide's last line: k_s and k_t are missing":
+            "a mirror shows the plate" catches slipped(LrSlip::NoShares, stage, ray, depth);
+        "the ambient term ρ_d I_a is missing: shadows are black":
+            "the ambient light" catches slipped(LrSlip::NoAmbient, stage, ray, depth);
+        "the emission ε is missing: lamps shine, but are black themselves":
+            "a plate that glows on one side" catches slipped(LrSlip::NoEmission, stage, ray, depth);
+        "the emission is sent to both sides: only the outside of a surface glows":
+            "a plate that glows on one side" catches slipped(LrSlip::TwoSided, stage, ray, depth);
+        "a ray that meets nothing is black: « couleur de fond » is missing":
+            "nothing is met" catches slipped(LrSlip::NoBackground, stage, ray, depth);
+        "the recursion ends one bounce early: a ray at Max_Prof is still traced, one beyond is not":
+            "Max_Prof" catches slipped(LrSlip::EarlyEnd, stage, ray, depth);
+        "the depth does not grow: nothing ends the recursion between two mirrors":
+            "two mirrors face each other" catches slipped(LrSlip::SameDepth, stage, ray, depth);
+        "the shadow rays are not asked: every lamp is taken as visible":
+            "a lamp behind a ball, and one beside it" catches
+                slipped(LrSlip::NoShadows, stage, ray, depth);
+        "V is the ray's own direction: the highlight needs the direction to the eye, −direction":
+            "its highlight, in the mirror direction" catches
+                slipped(LrSlip::TowardsSurface, stage, ray, depth);
+        "every surface is entered: where the ray leaves the glass, n₁ and n₂ change places":
+            "into a glass ball and out of it" catches
+                slipped(LrSlip::AlwaysEntering, stage, ray, depth);
+        "at total reflection the share k_t is lost: it goes to the mirror ray":
+            "total reflection" catches slipped(LrSlip::LostShare, stage, ray, depth);
+    },
     draw,
     explain: Some(explain),
 };
 
 #[derive(Clone, Copy, PartialEq)]
-enum Slip {
+enum LrSlip {
     NoShares,
     NoAmbient,
     NoEmission,
@@ -159,46 +108,47 @@ enum Slip {
 }
 
 /// LR with one slip.
-fn slipped(slip: Slip, stage: &Stage, ray: &Ray, depth: u32) -> Rgb {
+fn slipped(slip: LrSlip, stage: &Stage, ray: &Ray, depth: u32) -> Rgb {
     let scene = stage.scene;
-    if depth > stage.max_depth || slip == Slip::EarlyEnd && depth == stage.max_depth {
+    if depth > stage.max_depth || slip == LrSlip::EarlyEnd && depth == stage.max_depth {
         return Rgb::ZERO;
     }
     let Some(surface) = stage.surface(ray) else {
-        return if slip == Slip::NoBackground { Rgb::ZERO } else { scene.background };
+        return if slip == LrSlip::NoBackground { Rgb::ZERO } else { scene.background };
     };
     let incident = ray.direction;
     let (material, reflectance) = (scene.material(surface.material), stage.reflectance(&surface));
     let is_outside = surface.geometric_normal.dot(incident) < 0.0;
     let mut radiance = Rgb::ZERO;
-    if slip != Slip::NoAmbient {
+    if slip != LrSlip::NoAmbient {
         radiance += reflectance.diffuse * scene.ambient;
     }
-    if slip != Slip::NoEmission && (is_outside || slip == Slip::TwoSided) {
+    if slip != LrSlip::NoEmission && (is_outside || slip == LrSlip::TwoSided) {
         radiance += material.emission;
     }
     let n = surface.shading_normal_towards(-incident);
-    let to_eye = if slip == Slip::TowardsSurface { incident } else { -incident };
+    let to_eye = if slip == LrSlip::TowardsSurface { incident } else { -incident };
     for lamp in &stage.lamps {
         let shadow = reference::shadow_ray(&surface, lamp.position);
-        let (l, distance) = shadow.direction.normalize_and_length();
-        let is_lit = slip == Slip::NoShadows || stage.is_lit(&shadow);
-        let intensity = lamp.intensity_towards(l);
-        radiance += reference::local_light(intensity, is_lit, distance, &reflectance, n, l, to_eye);
+        let (to_light, distance) = shadow.direction.normalize_and_length();
+        let visible = slip == LrSlip::NoShadows || stage.is_lit(&shadow);
+        let intensity = lamp.intensity_towards(to_light);
+        let lit = Lit { intensity, visible, distance, reflectance, n, to_light, to_eye };
+        radiance += reference::local_light(&lit);
     }
     let sent = |k: Rgb, direction: DVec3| {
-        let depth = if slip == Slip::SameDepth { depth } else { depth + 1 };
-        let share = if slip == Slip::NoShares { Rgb::ONE } else { k };
+        let depth = if slip == LrSlip::SameDepth { depth } else { depth + 1 };
+        let share = if slip == LrSlip::NoShares { Rgb::ONE } else { k };
         share * slipped(slip, stage, &surface.spawn(direction), depth)
     };
     let (n, index) = (surface.optical_normal(incident), material.refractive_index);
     let (n1, n2) =
-        if is_outside || slip == Slip::AlwaysEntering { (1.0, index) } else { (index, 1.0) };
+        if is_outside || slip == LrSlip::AlwaysEntering { (1.0, index) } else { (index, 1.0) };
     let mut k_s = material.k_s;
     if material.k_t != Rgb::ZERO {
         match reference::refracted_ray(incident, n, n1, n2) {
             Some(direction) => radiance += sent(material.k_t, direction),
-            None if slip == Slip::LostShare => (),
+            None if slip == LrSlip::LostShare => (),
             None => k_s += material.k_t,
         }
     }
@@ -217,7 +167,7 @@ fn compare(
     ray: Ray,
     max_depth: u32,
     wanted: Rgb,
-) -> Result<(), Mismatch> {
+) -> Verdict {
     let scene = parsed("exercise", text);
     let got = (subject.lr)(&Stage::new(&scene, max_depth, reference::SUBJECT), &ray, 0);
     within(1e-10, || format!("{words}; {}, Max_Prof {max_depth}", ray.shown()), &got, &wanted)
@@ -229,12 +179,12 @@ const BALL_BEHIND: &str = "
     material.ball = { rho_d = 1 }
     sphere = [{ center = [0, 0, 9], radius = 1, material = 'ball' }]";
 
-fn background(subject: &Subject) -> Result<(), Mismatch> {
+fn background(subject: &Subject) -> Verdict {
     let ray = Ray::new(DVec3::ZERO, DVec3::NEG_Z);
     compare(subject, BALL_BEHIND, "a background (0.2, 0.3, 0.4), a ball behind", ray, 5, SKY)
 }
 
-fn beyond(subject: &Subject) -> Result<(), Mismatch> {
+fn beyond(subject: &Subject) -> Verdict {
     let scene = parsed("exercise", BALL_BEHIND);
     let ray = Ray::new(DVec3::ZERO, DVec3::NEG_Z);
     for (depth, wanted) in [(3, Rgb::ZERO), (2, SKY)] {
@@ -259,7 +209,7 @@ fn to_origin() -> Ray {
     Ray::new(DVec3::new(3.0, 4.0, 0.0), DVec3::new(-0.6, -0.8, 0.0))
 }
 
-fn matte(subject: &Subject) -> Result<(), Mismatch> {
+fn matte(subject: &Subject) -> Verdict {
     // 8 / 2² straight from above; 50 / 5² with the cosine 4/5.
     for (lamp, words, light) in [
         ("{ position = [0, 2, 0], intensity = 8 }", "a lamp of 8 at (0, 2, 0)", 2.0),
@@ -273,7 +223,7 @@ fn matte(subject: &Subject) -> Result<(), Mismatch> {
 }
 
 /// The lamp stands where the eye's ray is mirrored to, so R·V = 1 and the highlight is ρ_s.
-fn shiny(subject: &Subject) -> Result<(), Mismatch> {
+fn shiny(subject: &Subject) -> Verdict {
     let text = "
         light = [{ position = [-3, 4, 0], intensity = 50 }]
         material.floor = { rho_d = [0.5, 0.25, 1], rho_s = 0.25, shininess = 20 }
@@ -283,13 +233,13 @@ fn shiny(subject: &Subject) -> Result<(), Mismatch> {
     compare(subject, text, words, to_origin(), 5, 2.0 * (0.8 * DIFFUSE + 0.25))
 }
 
-fn ambient(subject: &Subject) -> Result<(), Mismatch> {
+fn ambient(subject: &Subject) -> Verdict {
     let text = format!("ambient = [0.1, 0.2, 0.4]\n{FLOOR}");
     let words = "a floor y = 0, ρ_d = (0.5, 0.25, 1), I_a = (0.1, 0.2, 0.4), no lamp";
     compare(subject, &text, words, to_origin(), 5, DIFFUSE * Rgb::new(0.1, 0.2, 0.4))
 }
 
-fn shadow(subject: &Subject) -> Result<(), Mismatch> {
+fn shadow(subject: &Subject) -> Verdict {
     let text = format!(
         "light = [
             {{ position = [0, 2, 0], intensity = 8 }}, {{ position = [-3, 4, 0], intensity = 50 }}]
@@ -309,7 +259,7 @@ const GLOW: Rgb = Rgb::new(2.0, 4.0, 0.5);
 const PLATE_AT_3: &str =
     "{ vertices = [[3, 3, -1], [3, 3, 1], [3, 5, 1], [3, 5, -1]], material = 'plate' }";
 
-fn emission(subject: &Subject) -> Result<(), Mismatch> {
+fn emission(subject: &Subject) -> Verdict {
     let text = format!("polygon = [{PLATE_AT_3}]\n{PLATE}");
     for (from, direction, wanted, side) in
         [(0.0, DVec3::X, GLOW, "outside"), (6.0, DVec3::NEG_X, Rgb::ZERO, "inside")]
@@ -322,7 +272,7 @@ fn emission(subject: &Subject) -> Result<(), Mismatch> {
 }
 
 /// One surface to go through, unlike a ball's two, where two wrong signs make a right one.
-fn pane(subject: &Subject) -> Result<(), Mismatch> {
+fn pane(subject: &Subject) -> Verdict {
     let text = format!(
         "material.pane = {{ k_t = [0.5, 0.25, 1] }}
         polygon = [{PLATE_AT_3},
@@ -334,7 +284,7 @@ fn pane(subject: &Subject) -> Result<(), Mismatch> {
     compare(subject, &text, words, ray, 5, Rgb::new(1.0, 1.0, 0.5))
 }
 
-fn mirror(subject: &Subject) -> Result<(), Mismatch> {
+fn mirror(subject: &Subject) -> Verdict {
     let text = format!(
         "polygon = [{PLATE_AT_3},
             {{ vertices = [[-1, 0, 1], [1, 0, 1], [1, 0, -1], [-1, 0, -1]], material = 'mirror' }}]
@@ -347,7 +297,7 @@ fn mirror(subject: &Subject) -> Result<(), Mismatch> {
 }
 
 /// Each of the Max_Prof + 1 surfaces adds ρ_d I_a = ½, the next one half as much: 1 − ½^(Max_Prof + 1).
-fn facing_mirrors(subject: &Subject) -> Result<(), Mismatch> {
+fn facing_mirrors(subject: &Subject) -> Verdict {
     let text = "
         ambient = 1
         material.mirror = { rho_d = 0.5, k_s = 0.5 }
@@ -363,7 +313,7 @@ fn facing_mirrors(subject: &Subject) -> Result<(), Mismatch> {
     Ok(())
 }
 
-fn no_ball(subject: &Subject) -> Result<(), Mismatch> {
+fn no_ball(subject: &Subject) -> Verdict {
     let text = "
         background = [0.2, 0.3, 0.4]
         material.air = { k_t = 1, refractive_index = 1 }
@@ -377,7 +327,7 @@ fn no_ball(subject: &Subject) -> Result<(), Mismatch> {
 /// A ray along −z meets a glass ball of radius 1 at x = 3/5, so sin θ₁ = 3/5 and sin θ₂ = 2/5. It passes along
 /// the chord, which is 2 cos θ₂ long, and leaves bent by 2 (θ₁ − θ₂) towards the axis, from the point at the angle
 /// θ₁ + π − 2 θ₂ around the ball's centre.
-fn glass_ball(subject: &Subject) -> Result<(), Mismatch> {
+fn glass_ball(subject: &Subject) -> Verdict {
     let (theta1, theta2) = (0.6_f64.asin(), 0.4_f64.asin());
     let (out_x, out_z) = (theta1 + std::f64::consts::PI - 2.0 * theta2).sin_cos();
     let x = out_x - (out_z + 3.0) * (2.0 * (theta1 - theta2)).tan();
@@ -401,7 +351,7 @@ fn glass_ball(subject: &Subject) -> Result<(), Mismatch> {
 }
 
 /// From within glass at 45 degrees, where the sine 0.707 is above 2/3: k_s + k_t = 3/4 goes to the plate.
-fn total_reflection(subject: &Subject) -> Result<(), Mismatch> {
+fn total_reflection(subject: &Subject) -> Verdict {
     let text = format!(
         "{PLATE}
         background = 1
@@ -418,7 +368,7 @@ fn total_reflection(subject: &Subject) -> Result<(), Mismatch> {
 
 const MAX_DEPTH: u32 = 5;
 
-fn title(subject: &Subject) -> Result<(), Mismatch> {
+fn title(subject: &Subject) -> Verdict {
     let (scene, rays) = title_rays(MAX_DEPTH);
     for (case, ray) in rays {
         let stage = || Stage::new(&scene, MAX_DEPTH, reference::SUBJECT);

@@ -5,10 +5,13 @@ use lancer_core::Rgb;
 use lancer_core::geometry::Ray;
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::scene::Scene;
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, within};
+use lancer_exercise::{
+    Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, ensure, slips, within,
+};
 use lancer_lesson::scenes::parsed;
 use lancer_whitted::{RayCounts, RayKind};
 
+use super::reference::ray_tree;
 use super::{Node, Stage, Subject, from_eye, painted, reference, title_rays};
 use crate::scenes;
 
@@ -18,7 +21,6 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         name: "ray-tree",
         title: "The ray tree",
         slide: "Arbre de rayons",
-        file: "e09_ray_tree.rs",
         stub: include_str!("../../stubs/e09_ray_tree.rs"),
         functions: &["ray_tree", "count_rays"],
         minutes: 30,
@@ -51,70 +53,32 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "a stack of panes makes a full tree", run: full_tree },
         Check { name: "the title picture", run: title },
     ],
-    mutants: &[
-        Mutant {
-            says: "a ray beyond Max_Prof is counted: it was never traced",
-            caught_by: "the rays of a given tree",
-            mistake: |subject| {
-                subject.count_rays = |node| counted(node, &|node| (true, node.shadows));
-            },
-        },
-        Mutant {
-            says: "a surface's shadow rays are counted once, however many lamps it faces",
-            caught_by: "the rays of a given tree",
-            mistake: |subject| {
-                subject.count_rays =
-                    |node| counted(node, &|node| (node.traced, node.shadows.min(1)));
-            },
-        },
-        Mutant {
-            says: "the weight is the last k alone: it is the product of all k on the way",
-            caught_by: "two mirrors make a chain",
-            mistake: |subject| {
-                subject.ray_tree = |stage, call| {
-                    changed(reference::ray_tree(stage, call), &|node| {
-                        for child in &mut node.children {
-                            child.weight /= node.weight;
-                        }
-                    })
-                };
-            },
-        },
-        Mutant {
-            says: "the recursion ends one bounce early: a ray at Max_Prof is still traced, one beyond is not",
-            caught_by: "two mirrors make a chain",
-            mistake: |subject| {
-                subject.ray_tree = |stage, call| {
-                    changed(reference::ray_tree(stage, call), &|node| {
-                        if node.depth >= stage.max_depth {
-                            *node =
-                                Node { traced: false, shadows: 0, children: Vec::new(), ..*node };
-                        }
-                    })
-                };
-            },
-        },
-        Mutant {
-            says: "the mirror ray comes before the refracted one",
-            caught_by: "a pane sends two rays",
-            mistake: |subject| {
-                subject.ray_tree = |stage, call| {
-                    changed(reference::ray_tree(stage, call), &|node| node.children.reverse())
-                };
-            },
-        },
-        Mutant {
-            says: "a call beyond Max_Prof has no node at all: it stays in the tree as a leaf",
-            caught_by: "two mirrors make a chain",
-            mistake: |subject| {
-                subject.ray_tree = |stage, call| {
-                    changed(reference::ray_tree(stage, call), &|node| {
-                        node.children.retain(|child| child.traced);
-                    })
-                };
-            },
-        },
-    ],
+    slips: slips! {
+        count_rays(node):
+        "a ray beyond Max_Prof is counted: it was never traced":
+            "the rays of a given tree" catches counted(node, &|node| (true, node.shadows));
+        "a surface's shadow rays are counted once, however many lamps it faces":
+            "the rays of a given tree" catches
+                counted(node, &|node| (node.traced, node.shadows.min(1)));
+
+        ray_tree(stage, call):
+        "the weight is the last k alone: it is the product of all k on the way":
+            "two mirrors make a chain" catches changed(ray_tree(stage, call), &|node| {
+                node.children.iter_mut().for_each(|child| child.weight /= node.weight);
+            });
+        "the recursion ends one bounce early: a ray at Max_Prof is still traced, one beyond is not":
+            "two mirrors make a chain" catches changed(ray_tree(stage, call), &|node| {
+                if node.depth >= stage.max_depth {
+                    *node = cut(node.kind, node.depth, node.weight);
+                }
+            });
+        "the mirror ray comes before the refracted one":
+            "a pane sends two rays" catches
+                changed(ray_tree(stage, call), &|node| node.children.reverse());
+        "a call beyond Max_Prof has no node at all: it stays in the tree as a leaf":
+            "two mirrors make a chain" catches
+                changed(ray_tree(stage, call), &|node| node.children.retain(|child| child.traced));
+    },
     draw,
     explain: Some(explain),
 };
@@ -152,14 +116,13 @@ fn counts_shown(counts: &RayCounts) -> String {
 }
 
 fn compare_counts(
+    subject: &Subject,
     case: impl Into<String>,
-    got: &RayCounts,
+    tree: &Node,
     wanted: &RayCounts,
-) -> Result<(), Mismatch> {
-    if got == wanted {
-        return Ok(());
-    }
-    Err(Mismatch::new(case, counts_shown(got), counts_shown(wanted)))
+) -> Verdict {
+    let got = (subject.count_rays)(tree);
+    ensure(got == *wanted, || Mismatch::new(case, counts_shown(&got), counts_shown(wanted)))
 }
 
 /// The tree of a ray in a scene, given as a text and in words.
@@ -170,28 +133,24 @@ fn compare(
     ray: Ray,
     max_depth: u32,
     wanted: &Node,
-) -> Result<(), Mismatch> {
+) -> Verdict {
     let scene = parsed("exercise", text);
     let stage = Stage::new(&scene, max_depth, reference::SUBJECT);
     let got = (subject.ray_tree)(&stage, &from_eye(ray));
     within(1e-14, || format!("{words}; {}, Max_Prof {max_depth}", ray.shown()), &got, wanted)
 }
 
-fn given_tree(subject: &Subject) -> Result<(), Mismatch> {
+fn given_tree(subject: &Subject) -> Verdict {
     use RayKind::{Mirror, Primary, Refracted};
     let lit = |node, shadows| Node { shadows, ..node };
     let leaf = |kind, depth| traced(kind, depth, 0.5, Vec::new());
     let inner = traced(Refracted, 1, 0.5, vec![lit(leaf(Refracted, 2), 3), cut(Mirror, 2, 0.25)]);
     let tree = lit(traced(Primary, 0, 1.0, vec![inner, lit(leaf(Mirror, 1), 1)]), 2);
     let wanted = RayCounts { primary: 1, mirror: 1, refracted: 2, shadow: 6 };
-    compare_counts(
-        format!("count_rays of the tree\n{}", tree.shown()),
-        &(subject.count_rays)(&tree),
-        &wanted,
-    )
+    compare_counts(subject, format!("count_rays of the tree\n{}", tree.shown()), &tree, &wanted)
 }
 
-fn miss(subject: &Subject) -> Result<(), Mismatch> {
+fn miss(subject: &Subject) -> Verdict {
     let text = "
         material.ball = { rho_d = 1, k_s = 1 }
         light = [{ position = [0, 4, 0], intensity = 1 }]
@@ -201,7 +160,7 @@ fn miss(subject: &Subject) -> Result<(), Mismatch> {
     compare(subject, text, "a ball behind, a lamp", ray, 5, &wanted)
 }
 
-fn lamps(subject: &Subject) -> Result<(), Mismatch> {
+fn lamps(subject: &Subject) -> Verdict {
     let text = "
         material.floor = { rho_d = 1 }
         light = [
@@ -216,7 +175,7 @@ fn lamps(subject: &Subject) -> Result<(), Mismatch> {
     Ok(())
 }
 
-fn chain(subject: &Subject) -> Result<(), Mismatch> {
+fn chain(subject: &Subject) -> Verdict {
     let text = "
         material.mirror = { k_s = [0.125, 0.5, 0.25] }
         polygon = [
@@ -250,7 +209,7 @@ fn panes(reach: i32) -> String {
     )
 }
 
-fn pane(subject: &Subject) -> Result<(), Mismatch> {
+fn pane(subject: &Subject) -> Verdict {
     let words =
         "a pane z = 0, refractive index 1, k_t = (0.25, 0.5, 0.25), k_s = (0.25, 0.125, 0.125)";
     let ray = Ray::new(DVec3::new(0.0, 0.0, 0.5), DVec3::new(0.6, 0.0, -0.8));
@@ -263,7 +222,7 @@ fn pane(subject: &Subject) -> Result<(), Mismatch> {
 }
 
 /// From within glass at 45 degrees, where the sine 0.707 is above 2/3.
-fn total_reflection(subject: &Subject) -> Result<(), Mismatch> {
+fn total_reflection(subject: &Subject) -> Verdict {
     let text = "
         material.glass = { k_s = [0.25, 0, 0], k_t = [0.5, 0.625, 0.5], refractive_index = 1.5 }
         polygon = [{ vertices = [[-9, 0, 9], [9, 0, 9], [9, 0, -9], [-9, 0, -9]], material = 'glass' }]";
@@ -275,7 +234,7 @@ fn total_reflection(subject: &Subject) -> Result<(), Mismatch> {
 }
 
 /// Between panes without end every ray meets one, so Max_Prof 5 leaves 2⁶ − 1 traced calls and 2⁶ leaves.
-fn full_tree(subject: &Subject) -> Result<(), Mismatch> {
+fn full_tree(subject: &Subject) -> Verdict {
     let scene = parsed("panes", &panes(6));
     let ray = Ray::new(DVec3::new(0.0, 0.0, 0.5), DVec3::new(0.6, 0.0, -0.8));
     let tree = (subject.ray_tree)(&Stage::new(&scene, 5, reference::SUBJECT), &from_eye(ray));
@@ -293,20 +252,17 @@ fn full_tree(subject: &Subject) -> Result<(), Mismatch> {
     };
     within(0.0, case, &(nodes, leaves), &(63, 64))?;
     let wanted = RayCounts { primary: 1, mirror: 31, refracted: 31, shadow: 0 };
-    compare_counts(
-        "count_rays of this tree, half of whose calls are mirror rays",
-        &(subject.count_rays)(&tree),
-        &wanted,
-    )
+    let case = "count_rays of this tree, half of whose calls are mirror rays";
+    compare_counts(subject, case, &tree, &wanted)
 }
 
 const MAX_DEPTH: u32 = 5;
 
-fn title(subject: &Subject) -> Result<(), Mismatch> {
+fn title(subject: &Subject) -> Verdict {
     let (scene, rays) = title_rays(MAX_DEPTH);
     for (case, ray) in rays {
         let (stage, call) = (|| Stage::new(&scene, MAX_DEPTH, reference::SUBJECT), from_eye(ray));
-        let wanted = reference::ray_tree(&stage(), &call);
+        let wanted = ray_tree(&stage(), &call);
         within(1e-14, || case, &(subject.ray_tree)(&stage(), &call), &wanted)?;
     }
     Ok(())

@@ -5,9 +5,10 @@ use std::cell::Cell;
 use glam::DVec2;
 use lancer_core::Rgb;
 use lancer_core::image::{Image, ImageSize};
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, same, within};
+use lancer_exercise::{Card, Check, Exercise, Shown, Solution, Verdict, same, slips, within};
 
-use super::{Film, Stage, Subject, painted, reference};
+use super::reference::{pixel_mean, rms_error};
+use super::{Film, Stage, Subject, painted};
 use crate::scenes;
 
 pub const EXERCISE: Exercise<Subject> = Exercise {
@@ -16,7 +17,6 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         name: "samples",
         title: "Samples and their error",
         slide: "Critiques du lancer de rayons : aliassage et disparition de petits objets",
-        file: "e10_samples.rs",
         stub: include_str!("../../stubs/e10_samples.rs"),
         functions: &["pixel_mean", "rms_error"],
         minutes: 20,
@@ -45,69 +45,35 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "the error of one pixel, by hand", run: one_pixel },
         Check { name: "the error over pixels and channels, by hand", run: pixels },
     ],
-    mutants: &[
-        Mutant {
-            says: "the samples lie in the corners of their cells, not in the centres: ½ is missing",
-            caught_by: "one sample is the centre",
-            mistake: |subject| {
-                subject.pixel_mean = |film, x, y, n| {
-                    let half = 0.5 / f64::from(n);
-                    reference::pixel_mean(&|a, b| film(a - half, b - half), x, y, n)
-                };
-            },
-        },
-        Mutant {
-            says: "the sum is not divided: more samples make the pixel brighter",
-            caught_by: "a linear radiance is averaged exactly",
-            mistake: |subject| {
-                subject.pixel_mean =
-                    |film, x, y, n| f64::from(n * n) * reference::pixel_mean(film, x, y, n);
-            },
-        },
-        Mutant {
-            says: "the sum is divided by n: there are n × n samples",
-            caught_by: "a linear radiance is averaged exactly",
-            mistake: |subject| {
-                subject.pixel_mean =
-                    |film, x, y, n| f64::from(n) * reference::pixel_mean(film, x, y, n);
-            },
-        },
-        Mutant {
-            says: "only the cells of the diagonal have a sample: one loop is not enough",
-            caught_by: "n × n samples",
-            mistake: |subject| subject.pixel_mean = diagonal,
-        },
-        Mutant {
-            says: "the mean of the absolute errors is taken, not the root of the mean square",
-            caught_by: "the error of one pixel, by hand",
-            mistake: |subject| {
-                subject.rms_error = |a, b| {
-                    let errors = a.iter().zip(b).map(|(a, b)| (*a - *b).abs().element_sum());
-                    errors.sum::<f64>() / (3 * a.len()) as f64
-                };
-            },
-        },
-        Mutant {
-            says: "the square root is missing: this is the mean square error",
-            caught_by: "the error of one pixel, by hand",
-            mistake: |subject| subject.rms_error = |a, b| reference::rms_error(a, b).powi(2),
-        },
-        Mutant {
-            says: "the squares are divided by the number of pixels: a pixel has three channels",
-            caught_by: "the error of one pixel, by hand",
-            mistake: |subject| {
-                subject.rms_error = |a, b| 3.0_f64.sqrt() * reference::rms_error(a, b);
-            },
-        },
-        Mutant {
-            says: "the squares are added up, but never divided by their number",
-            caught_by: "the error of one pixel, by hand",
-            mistake: |subject| {
-                subject.rms_error =
-                    |a, b| ((3 * a.len()) as f64).sqrt() * reference::rms_error(a, b);
-            },
-        },
-    ],
+    slips: slips! {
+        pixel_mean(film, x, y, n):
+        "the samples lie in the corners of their cells, not in the centres: ½ is missing":
+            "one sample is the centre" catches {
+                let half = 0.5 / f64::from(n);
+                pixel_mean(&|a, b| film(a - half, b - half), x, y, n)
+            };
+        "the sum is not divided: more samples make the pixel brighter":
+            "a linear radiance is averaged exactly" catches
+                f64::from(n * n) * pixel_mean(film, x, y, n);
+        "the sum is divided by n: there are n × n samples":
+            "a linear radiance is averaged exactly" catches
+                f64::from(n) * pixel_mean(film, x, y, n);
+        "only the cells of the diagonal have a sample: one loop is not enough":
+            "n × n samples" catches diagonal(film, x, y, n);
+
+        rms_error(a, b):
+        "the mean of the absolute errors is taken, not the root of the mean square":
+            "the error of one pixel, by hand" catches {
+                let errors = a.iter().zip(b).map(|(a, b)| (*a - *b).abs().element_sum());
+                errors.sum::<f64>() / channels(a)
+            };
+        "the square root is missing: this is the mean square error":
+            "the error of one pixel, by hand" catches rms_error(a, b).powi(2);
+        "the squares are divided by the number of pixels: a pixel has three channels":
+            "the error of one pixel, by hand" catches 3.0_f64.sqrt() * rms_error(a, b);
+        "the squares are added up, but never divided by their number":
+            "the error of one pixel, by hand" catches channels(a).sqrt() * rms_error(a, b);
+    },
     draw,
     explain: None,
 };
@@ -118,23 +84,27 @@ fn diagonal(film: &Film, x: u32, y: u32, n: u32) -> Rgb {
     samples.map(|point| film(point.x, point.y)).sum::<Rgb>() / f64::from(n)
 }
 
+fn channels(pixels: &[Rgb]) -> f64 {
+    (3 * pixels.len()) as f64
+}
+
 fn compare(
     subject: &Subject,
     film: &Film,
     text: &str,
     [x, y, n]: [u32; 3],
     wanted: Rgb,
-) -> Result<(), Mismatch> {
+) -> Verdict {
     let case = || format!("pixel ({x}, {y}), n = {n}, radiance(x, y) = {text}");
     within(1e-12, case, &(subject.pixel_mean)(film, x, y, n), &wanted)
 }
 
-fn centre(subject: &Subject) -> Result<(), Mismatch> {
+fn centre(subject: &Subject) -> Verdict {
     let film = |x: f64, y: f64| Rgb::new(x, y, x * y);
     compare(subject, &film, "(x, y, x y)", [3, 5, 1], Rgb::new(3.5, 5.5, 19.25))
 }
 
-fn number_of_samples(subject: &Subject) -> Result<(), Mismatch> {
+fn number_of_samples(subject: &Subject) -> Verdict {
     for n in [2, 5] {
         let samples = Cell::new(0);
         let film = |_: f64, _: f64| {
@@ -147,7 +117,7 @@ fn number_of_samples(subject: &Subject) -> Result<(), Mismatch> {
     Ok(())
 }
 
-fn linear(subject: &Subject) -> Result<(), Mismatch> {
+fn linear(subject: &Subject) -> Verdict {
     let film = |x: f64, y: f64| Rgb::new(1.0, x + 2.0 * y, 4.0 - y);
     for n in [2, 3, 8] {
         let wanted = Rgb::new(1.0, 2.5 + 2.0 * 7.5, 4.0 - 7.5);
@@ -157,7 +127,7 @@ fn linear(subject: &Subject) -> Result<(), Mismatch> {
 }
 
 /// The midpoint rule on [0, 1]: Σ ((i + ½) / n)² / n = 1/3 − 1 / (12 n²).
-fn square(subject: &Subject) -> Result<(), Mismatch> {
+fn square(subject: &Subject) -> Verdict {
     let film = |x: f64, y: f64| Rgb::new(x * x, y * y, x * x * y * y);
     for n in [1, 2, 3, 10] {
         let mean = 1.0 / 3.0 - 1.0 / (12.0 * f64::from(n * n));
@@ -167,26 +137,21 @@ fn square(subject: &Subject) -> Result<(), Mismatch> {
     Ok(())
 }
 
-fn compare_error(
-    subject: &Subject,
-    reference: &[Rgb],
-    estimate: &[Rgb],
-    wanted: f64,
-) -> Result<(), Mismatch> {
+fn compare_error(subject: &Subject, reference: &[Rgb], estimate: &[Rgb], wanted: f64) -> Verdict {
     let list = |pixels: &[Rgb]| pixels.iter().map(Shown::shown).collect::<Vec<_>>().join(" ");
     let case = || format!("reference {}, estimate {}", list(reference), list(estimate));
     within(1e-13, case, &(subject.rms_error)(reference, estimate), &wanted)
 }
 
 /// The channels are off by 1, −1 and 5: √(27 / 3).
-fn one_pixel(subject: &Subject) -> Result<(), Mismatch> {
+fn one_pixel(subject: &Subject) -> Verdict {
     let (a, b) = (Rgb::new(1.0, 2.0, 3.0), Rgb::new(2.0, 1.0, 8.0));
     compare_error(subject, &[a], &[a], 0.0)?;
     compare_error(subject, &[a], &[b], 3.0)
 }
 
 /// (3, 0, 4), (0, 12, 0) and 0: √(169 / 9).
-fn pixels(subject: &Subject) -> Result<(), Mismatch> {
+fn pixels(subject: &Subject) -> Verdict {
     let reference = [Rgb::new(4.0, 1.0, 0.0), Rgb::new(0.5, 13.0, 2.0), Rgb::splat(0.25)];
     let estimate = [Rgb::new(1.0, 1.0, 4.0), Rgb::new(0.5, 1.0, 2.0), Rgb::splat(0.25)];
     compare_error(subject, &reference, &estimate, 13.0 / 3.0)

@@ -37,6 +37,25 @@ pub type Meeting = (f64, DVec3);
 /// The radiance at a film point (x, y), in pixels.
 pub type Film<'a> = dyn Fn(f64, f64) -> Rgb + 'a;
 
+/// A point of a surface in the light of one lamp, and from where it is seen.
+#[derive(Clone, Copy, Debug)]
+pub struct Lit {
+    /// Iᵢ of the lamp, per channel.
+    pub intensity: Rgb,
+    /// vis(i): whether the shadow ray reaches the lamp.
+    pub visible: bool,
+    /// dᵢ from the surface to the lamp, in scene units.
+    pub distance: f64,
+    /// ρ_d and ρ_s per channel, and the exponent n.
+    pub reflectance: Reflectance,
+    /// The unit normal N, on the eye's side.
+    pub n: DVec3,
+    /// L, unit, from the surface to the lamp, which may be behind the surface.
+    pub to_light: DVec3,
+    /// V, unit, from the surface to the eye.
+    pub to_eye: DVec3,
+}
+
 /// The functions that a student writes, as pointers: a tracer after Whitted, all of them together.
 #[derive(Clone, Copy)]
 pub struct Subject {
@@ -49,8 +68,8 @@ pub struct Subject {
     pub ray_sphere: fn(&Sphere, &Ray) -> Option<f64>,
     /// The ray from a surface to a lamp, which it reaches at t = 1.
     pub shadow_ray: fn(&SurfacePoint, DVec3) -> Ray,
-    /// One lamp's part of `eq:local`: intensity, vis, distance, ρ_d ρ_s and n, N, L, V.
-    pub local_light: fn(Rgb, bool, f64, &Reflectance, DVec3, DVec3, DVec3) -> Rgb,
+    /// One lamp's part of `eq:local`.
+    pub local_light: fn(&Lit) -> Rgb,
     /// The mirror direction of an incident direction, given N.
     pub reflected_ray: fn(DVec3, DVec3) -> DVec3,
     /// The refracted direction of an incident one, given N, n₁ and n₂, unless it is totally reflected.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use lancer_core::Rgb;
 use lancer_core::geometry::{Interval, Ray, Shear, Sphere, intersect_triangle};
-use lancer_core::illumination::{Reflectance, attenuation, local};
+use lancer_core::illumination::{attenuation, local};
 use lancer_core::image::ImageSize;
 use lancer_core::optics::{reflect, refract};
 use lancer_core::sampling::{Pattern, PixelSampling};
@@ -11,7 +11,7 @@ use lancer_core::scene::{Camera, PointSource};
 use lancer_core::world::{SurfacePoint, World};
 use lancer_whitted::{AtLimit, Call, RayCounts, RayEnd, RayTree, Settings, Whitted};
 
-use super::{Film, Meeting, Node, Stage, Subject};
+use super::{Film, Lit, Meeting, Node, Stage, Subject};
 
 /// All of them.
 pub const SUBJECT: Subject = Subject {
@@ -50,16 +50,9 @@ pub fn shadow_ray(surface: &SurfacePoint, lamp: DVec3) -> Ray {
 }
 
 /// [`Subject::local_light`].
-pub fn local_light(
-    intensity: Rgb,
-    visible: bool,
-    distance: f64,
-    reflectance: &Reflectance,
-    n: DVec3,
-    to_light: DVec3,
-    to_eye: DVec3,
-) -> Rgb {
-    intensity * attenuation(visible, distance) * local(reflectance, n, to_light, to_eye)
+pub fn local_light(lit: &Lit) -> Rgb {
+    let Lit { intensity, visible, distance, reflectance, n, to_light, to_eye } = *lit;
+    intensity * attenuation(visible, distance) * local(&reflectance, n, to_light, to_eye)
 }
 
 /// [`Subject::reflected_ray`].

@@ -5,7 +5,9 @@ use lancer_core::Rgb;
 use lancer_core::geometry::{Bounds3, Interval, Ray};
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::sampling::Uniform;
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, within};
+use lancer_exercise::{
+    Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, ensure, slips, within,
+};
 use lancer_lesson::hard_boxes::{Class, HardBox};
 use lancer_lesson::picture::painted;
 
@@ -18,7 +20,6 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         name: "slab-test",
         title: "A ray and a box",
         slide: "Hiérarchie de volumes englobants",
-        file: "e01_slab_test.rs",
         stub: include_str!("../../stubs/e01_slab_test.rs"),
         functions: &["slab_test"],
         minutes: 20,
@@ -52,85 +53,45 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "in a face", run: in_a_face },
         Check { name: "no corner is missed", run: corners },
     ],
-    mutants: &[
-        Mutant {
-            says: "the planes are taken as min first, max last: a ray with a negative direction meets max first",
-            caught_by: "against the axes",
-            mistake: |subject| {
-                subject.slab_test = |bounds, ray, range| {
-                    clip(bounds, ray, range, |o, d, min, max| [(min - o) / d, (max - o) / d * FAR])
-                };
-            },
-        },
-        Mutant {
-            says: "`min` and `max` sort the two planes; for a ray in a face 0 · ∞ = NaN, and they keep the other \
-                   operand: the slab becomes thin, and the ray is lost",
-            caught_by: "in a face",
-            mistake: |subject| {
-                subject.slab_test = |bounds, ray, range| {
-                    clip(bounds, ray, range, |o, d, min, max| {
-                        let (a, b) = ((min - o) / d, (max - o) / d);
-                        [a.min(b), a.max(b) * FAR]
-                    })
-                };
-            },
-        },
-        Mutant {
-            says: "the range is not looked at: boxes behind the ray, or beyond its end, count",
-            caught_by: "behind the ray, or beyond its range",
-            mistake: |subject| {
-                subject.slab_test = |bounds, ray, range| {
-                    let all = Interval { min: f64::NEG_INFINITY, max: f64::INFINITY };
-                    let enter = slab_test(bounds, ray, all)?;
-                    Some(enter.max(range.min))
-                };
-            },
-        },
-        Mutant {
-            says: "the far t is not widened: rounding makes a ray that touches a corner miss the box",
-            caught_by: "no corner is missed",
-            mistake: |subject| {
-                subject.slab_test = |bounds, ray, range| {
-                    clip(bounds, ray, range, |o, d, min, max| {
-                        let (first, last) =
-                            if d.is_sign_negative() { (max, min) } else { (min, max) };
-                        [(first - o) * (1.0 / d), (last - o) * (1.0 / d)]
-                    })
-                };
-            },
-        },
-        Mutant {
-            says: "the answer is where the ray leaves the box, not where it enters",
-            caught_by: "from the front",
-            mistake: |subject| {
-                subject.slab_test = |bounds, ray, range| {
-                    slab_test(bounds, ray, range)?;
-                    let back = Ray::new(ray.origin, -ray.direction);
-                    let all = Interval { min: f64::NEG_INFINITY, max: f64::INFINITY };
-                    slab_test(bounds, &back, all).map(|t| (-t).min(range.max))
-                };
-            },
-        },
-        Mutant {
-            says: "an axis with d = 0 is left out: a ray beside the slab is taken for one inside it",
-            caught_by: "parallel to a slab, outside and inside it",
-            mistake: |subject| {
-                subject.slab_test = |bounds, ray, range| {
-                    let along = ray.direction.cmpeq(DVec3::ZERO);
-                    let wide = Bounds3 {
-                        min: DVec3::select(along, ray.origin - 1.0, bounds.min),
-                        max: DVec3::select(along, ray.origin + 1.0, bounds.max),
-                    };
-                    slab_test(&wide, ray, range)
-                };
-            },
-        },
-    ],
+    slips: slips! {
+        slab_test(bounds, ray, range):
+        "the planes are taken as min first, max last: a ray with a negative direction meets max first":
+            "against the axes" catches
+                clip(bounds, ray, range, |o, d, min, max| [(min - o) / d, (max - o) / d * FAR]);
+        "`min` and `max` sort the two planes; for a ray in a face 0 · ∞ = NaN, and they keep the other operand: \
+         the slab becomes thin, and the ray is lost":
+            "in a face" catches clip(bounds, ray, range, |o, d, min, max| {
+                let (a, b) = ((min - o) / d, (max - o) / d);
+                [a.min(b), a.max(b) * FAR]
+            });
+        "the range is not looked at: boxes behind the ray, or beyond its end, count":
+            "behind the ray, or beyond its range" catches
+                slab_test(bounds, ray, LINE).map(|enter| enter.max(range.min));
+        "the far t is not widened: rounding makes a ray that touches a corner miss the box":
+            "no corner is missed" catches clip(bounds, ray, range, |o, d, min, max| {
+                let (first, last) = if d.is_sign_negative() { (max, min) } else { (min, max) };
+                [(first - o) * (1.0 / d), (last - o) * (1.0 / d)]
+            });
+        "the answer is where the ray leaves the box, not where it enters":
+            "from the front" catches {
+                slab_test(bounds, ray, range)?;
+                let back = Ray::new(ray.origin, -ray.direction);
+                slab_test(bounds, &back, LINE).map(|t| (-t).min(range.max))
+            };
+        "an axis with d = 0 is left out: a ray beside the slab is taken for one inside it":
+            "parallel to a slab, outside and inside it" catches {
+                let along = ray.direction.cmpeq(DVec3::ZERO);
+                let min = DVec3::select(along, ray.origin - 1.0, bounds.min);
+                let max = DVec3::select(along, ray.origin + 1.0, bounds.max);
+                slab_test(&Bounds3 { min, max }, ray, range)
+            };
+    },
     draw,
     explain: None,
 };
 
 const FAR: f64 = 1.0 + 4.0 * f64::EPSILON;
+const LINE: Interval = Interval { min: f64::NEG_INFINITY, max: f64::INFINITY };
 
 /// A slab test by what it says of each slab, from where it begins to where it ends.
 fn clip(
@@ -172,7 +133,7 @@ fn compare(
     direction: [f64; 3],
     range: Interval,
     wanted: Option<f64>,
-) -> Result<(), Mismatch> {
+) -> Verdict {
     let ray = Ray::new(origin.into(), direction.into());
     let got = (subject.slab_test)(&BOX, &ray, range);
     within(1e-9, || case(&BOX, &ray, range), &got, &wanted)
@@ -181,34 +142,34 @@ fn compare(
 const POSITIVE: Interval = Interval::POSITIVE;
 
 /// The planes are reached at t = 1.5, 1 and 1.75, and left at 2.5, 4 and 2.75.
-fn front(subject: &Subject) -> Result<(), Mismatch> {
+fn front(subject: &Subject) -> Verdict {
     compare(subject, [-1.0, -3.0, -4.0], [2.0, 2.0, 4.0], POSITIVE, Some(1.75))
 }
 
 /// x is left at t = 2.5, before z is reached at 3.5.
-fn past(subject: &Subject) -> Result<(), Mismatch> {
+fn past(subject: &Subject) -> Verdict {
     compare(subject, [-1.0, -3.0, -4.0], [2.0, 2.0, 2.0], POSITIVE, None)
 }
 
 /// The larger planes are reached at t = 1.5, 1 and 0.8, the smaller ones left at 2.5, 4 and 1.6.
-fn against(subject: &Subject) -> Result<(), Mismatch> {
+fn against(subject: &Subject) -> Verdict {
     compare(subject, [7.0, 7.0, 11.0], [-2.0, -2.0, -5.0], POSITIVE, Some(1.5))?;
     compare(subject, [7.0, 7.0, 11.0], [-2.0, -2.0, -8.0], POSITIVE, None)
 }
 
-fn inside(subject: &Subject) -> Result<(), Mismatch> {
+fn inside(subject: &Subject) -> Verdict {
     compare(subject, [3.0, 1.0, 5.0], [1.0, -2.0, 0.5], POSITIVE, Some(0.0))?;
     let later = Interval { min: 0.25, max: 9.0 };
     compare(subject, [3.0, 1.0, 5.0], [1.0, -2.0, 0.5], later, Some(0.25))
 }
 
-fn out_of_range(subject: &Subject) -> Result<(), Mismatch> {
+fn out_of_range(subject: &Subject) -> Verdict {
     compare(subject, [5.0, 7.0, 9.0], [1.0, 2.0, 1.5], POSITIVE, None)?;
     let short = Interval::up_to(1.5);
     compare(subject, [-1.0, -3.0, -4.0], [2.0, 2.0, 4.0], short, None)
 }
 
-fn parallel(subject: &Subject) -> Result<(), Mismatch> {
+fn parallel(subject: &Subject) -> Verdict {
     for zero in [0.0, -0.0] {
         compare(subject, [5.0, 1.0, 1.0], [zero, 0.5, 1.0], POSITIVE, None)?;
         compare(subject, [1.0, 1.0, 1.0], [zero, 0.5, 1.0], POSITIVE, None)?;
@@ -217,7 +178,7 @@ fn parallel(subject: &Subject) -> Result<(), Mismatch> {
     Ok(())
 }
 
-fn in_a_face(subject: &Subject) -> Result<(), Mismatch> {
+fn in_a_face(subject: &Subject) -> Verdict {
     for zero in [0.0, -0.0] {
         compare(subject, [2.0, 1.0, 1.0], [zero, 0.5, 1.0], POSITIVE, Some(2.0))?;
         compare(subject, [4.0, 1.0, 1.0], [zero, 0.5, 1.0], POSITIVE, Some(2.0))?;
@@ -226,7 +187,7 @@ fn in_a_face(subject: &Subject) -> Result<(), Mismatch> {
 }
 
 /// Rays that pass through a corner exactly: the box is met, however the quotients are rounded.
-fn corners(subject: &Subject) -> Result<(), Mismatch> {
+fn corners(subject: &Subject) -> Verdict {
     for class in [Class::Corner, Class::CornerFromAfar] {
         let mut random = Uniform::new(41, 0, 0);
         for _ in 0..2000 {
@@ -235,10 +196,10 @@ fn corners(subject: &Subject) -> Result<(), Mismatch> {
             let met = (subject.slab_test)(&bounds, &ray, POSITIVE);
             // Through a corner into the box, the ray enters there; along its outside it touches there.
             let wanted = slab_test(&bounds, &ray, POSITIVE);
-            if met.is_none() {
+            ensure(met.is_some(), || {
                 let text = case(&bounds, &ray, POSITIVE) + " (it passes through a corner)";
-                return Err(Mismatch::new(text, "None", wanted.shown()));
-            }
+                Mismatch::new(text, "None", wanted.shown())
+            })?;
         }
     }
     Ok(())

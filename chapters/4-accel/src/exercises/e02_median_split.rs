@@ -5,7 +5,7 @@ use lancer_core::Rgb;
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::sampling::Uniform;
 use lancer_core::scene::PrimitiveId;
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution};
+use lancer_exercise::{Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, slips};
 use lancer_lesson::picture::painted;
 
 use super::reference::median_split;
@@ -17,7 +17,6 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         name: "median-split",
         title: "The median split",
         slide: "Hiérarchie de volumes englobants",
-        file: "e02_median_split.rs",
         stub: include_str!("../../stubs/e02_median_split.rs"),
         functions: &["median_split"],
         minutes: 15,
@@ -46,72 +45,39 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "an odd number", run: odd },
         Check { name: "centres that coincide", run: coincide },
     ],
-    mutants: &[
-        Mutant {
-            says: "the cut is always across x: take the axis on which the centres are spread widest",
-            caught_by: "the longest axis, not the farthest",
-            mistake: |subject| subject.median_split = |items| along(items, |_, _| 0),
-        },
-        Mutant {
-            says: "the axis is that of the largest coordinates: the extent is the largest minus the smallest",
-            caught_by: "the longest axis, not the farthest",
-            mistake: |subject| {
-                subject.median_split = |items| along(items, |_, max| max.max_position());
-            },
-        },
-        Mutant {
-            says: "the items are not sorted: the order in which they arrive decides",
-            caught_by: "a row along x",
-            mistake: |subject| subject.median_split = |items| items.len() / 2,
-        },
-        Mutant {
-            says: "the upper half is at the front: the order is turned around",
-            caught_by: "a row along x",
-            mistake: |subject| {
-                subject.median_split = |items| {
-                    median_split(items);
-                    items.reverse();
-                    items.len() / 2
-                };
-            },
-        },
-        Mutant {
-            says: "the cut is at the middle of the box: that halves space, not the items",
-            caught_by: "a row along x",
-            mistake: |subject| {
-                subject.median_split = |items| {
-                    let (min, max) = extent(items);
-                    let axis = (max - min).max_position();
-                    let middle = 0.5 * (min + max)[axis];
-                    items.sort_by(|a, b| a.center[axis].total_cmp(&b.center[axis]));
-                    items.partition_point(|item| item.center[axis] < middle)
-                };
-            },
-        },
-        Mutant {
-            says: "of an odd number the front gets the larger part",
-            caught_by: "an odd number",
-            mistake: |subject| {
-                subject.median_split = |items| {
-                    median_split(items);
-                    items.len().div_ceil(2)
-                };
-            },
-        },
-        Mutant {
-            says: "ties are left to chance: where coordinates are equal the smaller id is lower, or the tree \
-                   depends on the order of its input",
-            caught_by: "centres that coincide",
-            mistake: |subject| {
-                subject.median_split = |items| {
-                    let (min, max) = extent(items);
-                    let axis = (max - min).max_position();
-                    items.sort_by(|a, b| a.center[axis].total_cmp(&b.center[axis]));
-                    items.len() / 2
-                };
-            },
-        },
-    ],
+    slips: slips! {
+        median_split(items):
+        "the cut is always across x: take the axis on which the centres are spread widest":
+            "the longest axis, not the farthest" catches along(0, items);
+        "the axis is that of the largest coordinates: the extent is the largest minus the smallest":
+            "the longest axis, not the farthest" catches
+                along(extent(items).1.max_position(), items);
+        "the items are not sorted: the order in which they arrive decides":
+            "a row along x" catches items.len() / 2;
+        "the upper half is at the front: the order is turned around":
+            "a row along x" catches {
+                median_split(items);
+                items.reverse();
+                items.len() / 2
+            };
+        "the cut is at the middle of the box: that halves space, not the items":
+            "a row along x" catches {
+                let ((min, max), axis) = (extent(items), widest(items));
+                along(axis, items);
+                items.partition_point(|item| item.center[axis] < 0.5 * (min + max)[axis])
+            };
+        "of an odd number the front gets the larger part":
+            "an odd number" catches {
+                median_split(items);
+                items.len().div_ceil(2)
+            };
+        "ties are left to chance: where coordinates are equal the smaller id is lower, or the tree depends on the \
+         order of its input":
+            "centres that coincide" catches {
+                sort(widest(items), items);
+                items.len() / 2
+            };
+    },
     draw,
     explain: None,
 };
@@ -122,11 +88,21 @@ fn extent(items: &[Item]) -> (DVec3, DVec3) {
     })
 }
 
-/// The split across an axis that is chosen by the box around the centres.
-fn along(items: &mut [Item], axis: impl Fn(DVec3, DVec3) -> usize) -> usize {
+/// The axis on which the centres are spread widest.
+fn widest(items: &[Item]) -> usize {
     let (min, max) = extent(items);
-    let axis = axis(min, max);
-    items.sort_by(|a, b| a.center[axis].total_cmp(&b.center[axis]).then(a.id.cmp(&b.id)));
+    (max - min).max_position()
+}
+
+/// What is equal along the axis stays in order.
+fn sort(axis: usize, items: &mut [Item]) {
+    items.sort_by(|a, b| a.center[axis].total_cmp(&b.center[axis]));
+}
+
+/// The split across an axis.
+fn along(axis: usize, items: &mut [Item]) -> usize {
+    items.sort_by_key(|item| item.id);
+    sort(axis, items);
     items.len() / 2
 }
 
@@ -138,12 +114,7 @@ fn ids(items: &[Item]) -> Vec<u32> {
 }
 
 /// Splits items at these centres, whose ids count from 0, given in the order of `given`.
-fn compare(
-    subject: &Subject,
-    centers: &[[f64; 3]],
-    given: &[u32],
-    wanted: &[u32],
-) -> Result<(), Mismatch> {
+fn compare(subject: &Subject, centers: &[[f64; 3]], given: &[u32], wanted: &[u32]) -> Verdict {
     let item = |&id: &u32| Item { center: centers[id as usize].into(), id: PrimitiveId(id) };
     let mut items: Vec<Item> = given.iter().map(item).collect();
     let list = |item: &Item| format!("{} at {}", item.id.0, item.center.shown());
@@ -159,24 +130,24 @@ fn compare(
     Err(Mismatch::new(format!("items {case}"), got, format!("{wanted:?} of {all:?} in front")))
 }
 
-fn row(subject: &Subject) -> Result<(), Mismatch> {
+fn row(subject: &Subject) -> Verdict {
     let centers = [[5.0, 1.0, 2.0], [1.0, 2.0, 1.0], [40.0, 1.5, 2.5], [3.0, 1.25, 1.5]];
     compare(subject, &centers, &[0, 1, 2, 3], &[1, 3])
 }
 
 /// The coordinates are largest on z, and spread widest on y.
-fn longest(subject: &Subject) -> Result<(), Mismatch> {
+fn longest(subject: &Subject) -> Verdict {
     let centers = [[1.0, -7.0, 20.0], [4.0, 5.0, 21.0], [2.0, 6.0, 22.5], [3.0, -6.0, 23.0]];
     compare(subject, &centers, &[2, 0, 3, 1], &[0, 3])
 }
 
-fn odd(subject: &Subject) -> Result<(), Mismatch> {
+fn odd(subject: &Subject) -> Verdict {
     let at = |z: f64| [0.5, 0.25 * z, z];
     let centers = [at(4.0), at(-2.0), at(3.0), at(9.0), at(-1.0)];
     compare(subject, &centers, &[3, 1, 2, 4, 0], &[1, 4])
 }
 
-fn coincide(subject: &Subject) -> Result<(), Mismatch> {
+fn coincide(subject: &Subject) -> Verdict {
     compare(subject, &[[1.5, 2.5, 3.5]; 6], &[4, 5, 1, 0, 3, 2], &[0, 1, 2])?;
     let centers = [[7.0, 1.0, 1.0], [2.0, 1.5, 1.0], [2.0, 1.0, 1.5], [2.0, 1.0, 1.0]];
     compare(subject, &centers, &[3, 0, 2, 1], &[1, 2])

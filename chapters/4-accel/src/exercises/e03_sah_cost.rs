@@ -4,7 +4,7 @@ use glam::DVec3;
 use lancer_core::Rgb;
 use lancer_core::geometry::Bounds3;
 use lancer_core::image::{Image, ImageSize};
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, same, within};
+use lancer_exercise::{Card, Check, Exercise, Shown, Solution, Verdict, same, slips, within};
 use lancer_lesson::picture::painted;
 
 use super::Subject;
@@ -16,7 +16,6 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         name: "sah-cost",
         title: "What a split costs",
         slide: "Hiérarchie de volumes englobants",
-        file: "e03_sah_cost.rs",
         stub: include_str!("../../stubs/e03_sah_cost.rs"),
         functions: &["sah_cost", "best_split"],
         minutes: 25,
@@ -48,66 +47,30 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "no split that does not pay", run: leaf },
         Check { name: "of equal costs the first", run: tie },
     ],
-    mutants: &[
-        Mutant {
-            says: "volumes are compared: the chance of being met goes with the surface",
-            caught_by: "a cost by hand",
-            mistake: |subject| subject.sah_cost = |n, p, c| by(n, p, c, DVec3::element_product),
-        },
-        Mutant {
-            says: "the surface is the sum of the extents: it is xy + yz + zx",
-            caught_by: "a cost by hand",
-            mistake: |subject| subject.sah_cost = |n, p, c| by(n, p, c, DVec3::element_sum),
-        },
-        Mutant {
-            says: "the sum is not divided by the node's surface: the ratios are probabilities",
-            caught_by: "a cost by hand",
-            mistake: |subject| {
-                subject.sah_cost = |node, parts, counts| {
-                    let area = surface(node.max - node.min);
-                    1.0 + area * (sah_cost(node, parts, counts) - 1.0)
-                };
-            },
-        },
-        Mutant {
-            says: "the 1 for visiting the node is missing",
-            caught_by: "a cost by hand",
-            mistake: |subject| subject.sah_cost = |n, p, c| sah_cost(n, p, c) - 1.0,
-        },
-        Mutant {
-            says: "the counts are swapped: each surface goes with its own number",
-            caught_by: "a cost by hand",
-            mistake: |subject| subject.sah_cost = |n, p, [a, b]| sah_cost(n, p, [b, a]),
-        },
-        Mutant {
-            says: "the row is cut in its middle, whatever that costs",
-            caught_by: "the gap in a row",
-            mistake: |subject| {
-                subject.best_split = |boxes| best_split(boxes).map(|_| boxes.len() / 2);
-            },
-        },
-        Mutant {
-            says: "a split is made where testing all is cheaper: compare the cost with n",
-            caught_by: "no split that does not pay",
-            mistake: |subject| {
-                subject.best_split = |boxes| {
-                    let cost = |left: &usize| cut(boxes, *left);
-                    (1..boxes.len()).min_by(|a, b| cost(a).total_cmp(&cost(b)))
-                };
-            },
-        },
-        Mutant {
-            says: "of equal costs the last is taken: replace the best only by a smaller one",
-            caught_by: "of equal costs the first",
-            mistake: |subject| {
-                subject.best_split = |boxes| {
-                    let cost = |left: &usize| cut(boxes, *left);
-                    let last = (1..boxes.len()).rev().min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
-                    (cost(&last) < boxes.len() as f64).then_some(last)
-                };
-            },
-        },
-    ],
+    slips: slips! {
+        sah_cost(node, parts, counts):
+        "volumes are compared: the chance of being met goes with the surface":
+            "a cost by hand" catches by(node, parts, counts, DVec3::element_product);
+        "the surface is the sum of the extents: it is xy + yz + zx":
+            "a cost by hand" catches by(node, parts, counts, DVec3::element_sum);
+        "the sum is not divided by the node's surface: the ratios are probabilities":
+            "a cost by hand" catches
+                1.0 + surface(node.max - node.min) * (sah_cost(node, parts, counts) - 1.0);
+        "the 1 for visiting the node is missing":
+            "a cost by hand" catches sah_cost(node, parts, counts) - 1.0;
+        "the counts are swapped: each surface goes with its own number":
+            "a cost by hand" catches sah_cost(node, parts, [counts[1], counts[0]]);
+
+        best_split(boxes):
+        "the row is cut in its middle, whatever that costs":
+            "the gap in a row" catches best_split(boxes).map(|_| boxes.len() / 2);
+        "a split is made where testing all is cheaper: compare the cost with n":
+            "no split that does not pay" catches cheapest(boxes, 1..boxes.len());
+        "of equal costs the last is taken: replace the best only by a smaller one":
+            "of equal costs the first" catches
+                cheapest(boxes, (1..boxes.len()).rev())
+                    .filter(|last| cut(boxes, *last) < boxes.len() as f64);
+    },
     draw,
     explain: None,
 };
@@ -133,12 +96,12 @@ fn cut(boxes: &[Bounds3], left: usize) -> f64 {
     sah_cost(&around(boxes), [&around(a), &around(b)], [a.len(), b.len()])
 }
 
-fn compare(
-    subject: &Subject,
-    extents: [[f64; 3]; 3],
-    counts: [usize; 2],
-    wanted: f64,
-) -> Result<(), Mismatch> {
+/// The first of the cuts that cost least.
+fn cheapest(boxes: &[Bounds3], cuts: impl Iterator<Item = usize>) -> Option<usize> {
+    cuts.min_by(|a, b| cut(boxes, *a).total_cmp(&cut(boxes, *b)))
+}
+
+fn compare(subject: &Subject, extents: [[f64; 3]; 3], counts: [usize; 2], wanted: f64) -> Verdict {
     let min = DVec3::new(-3.0, 1.0, 0.5);
     let [node, a, b] = extents.map(|extent| Bounds3 { min, max: min + DVec3::from(extent) });
     let got = (subject.sah_cost)(&node, [&a, &b], counts);
@@ -150,17 +113,17 @@ fn compare(
 }
 
 /// Half the surfaces: 6·4 + 4·2 + 2·6 = 44, 2·4 + 4·1 + 1·2 = 14 and 3·1 + 1·2 + 2·3 = 11.
-fn by_hand(subject: &Subject) -> Result<(), Mismatch> {
+fn by_hand(subject: &Subject) -> Verdict {
     let extents = [[6.0, 4.0, 2.0], [2.0, 4.0, 1.0], [3.0, 1.0, 2.0]];
     compare(subject, extents, [3, 8], 1.0 + (14.0 * 3.0 + 11.0 * 8.0) / 44.0)
 }
 
-fn empty_part(subject: &Subject) -> Result<(), Mismatch> {
+fn empty_part(subject: &Subject) -> Verdict {
     let extents = [[6.0, 4.0, 2.0], [2.0, 4.0, 1.0], [3.0, 1.0, 2.0]];
     compare(subject, extents, [0, 4], 2.0)
 }
 
-fn flat(subject: &Subject) -> Result<(), Mismatch> {
+fn flat(subject: &Subject) -> Verdict {
     let extents = [[5.0, 0.0, 4.0], [2.0, 0.0, 4.0], [3.0, 0.0, 2.0]];
     compare(subject, extents, [5, 3], 1.0 + (8.0 * 5.0 + 6.0 * 3.0) / 20.0)
 }
@@ -174,24 +137,24 @@ fn boxes(at: &[f64]) -> Vec<Bounds3> {
     at.iter().map(place).collect()
 }
 
-fn compare_split(subject: &Subject, at: &[f64], wanted: Option<usize>) -> Result<(), Mismatch> {
+fn compare_split(subject: &Subject, at: &[f64], wanted: Option<usize>) -> Verdict {
     let got = (subject.best_split)(&boxes(at));
     same(|| format!("boxes of extent (1, 2, 3) at x = {at:?}"), &got, &wanted)
 }
 
-fn gap(subject: &Subject) -> Result<(), Mismatch> {
+fn gap(subject: &Subject) -> Verdict {
     compare_split(subject, &[0.0, 20.0, 21.5, 23.0, 24.5], Some(1))?;
     compare_split(subject, &[0.0, 1.5, 3.0, 4.5, 5.5, 40.0], Some(5))
 }
 
-fn leaf(subject: &Subject) -> Result<(), Mismatch> {
+fn leaf(subject: &Subject) -> Verdict {
     compare_split(subject, &[0.0], None)?;
     compare_split(subject, &[0.0, 0.25], None)?;
     compare_split(subject, &[3.0; 4], None)
 }
 
 /// The cuts after the second and the fourth of these six mirror each other, and none is cheaper.
-fn tie(subject: &Subject) -> Result<(), Mismatch> {
+fn tie(subject: &Subject) -> Verdict {
     compare_split(subject, &[0.0, 1.0, 20.0, 21.0, 40.0, 41.0], Some(2))
 }
 

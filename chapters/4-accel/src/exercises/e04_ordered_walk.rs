@@ -7,7 +7,9 @@ use lancer_core::image::{Image, ImageSize};
 use lancer_core::intersector::{Hit, Intersector, LinearScan, TestCounts};
 use lancer_core::sampling::Uniform;
 use lancer_core::scene::{MaterialId, Mesh, Scene, SphereObject};
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, same};
+use lancer_exercise::{
+    Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, ensure, same, slips,
+};
 use lancer_lesson::picture::painted;
 
 use super::reference::visit;
@@ -20,7 +22,6 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         name: "ordered-walk",
         title: "Near child first",
         slide: "Hiérarchie de volumes englobants",
-        file: "e04_ordered_walk.rs",
         stub: include_str!("../../stubs/e04_ordered_walk.rs"),
         functions: &["visit"],
         minutes: 20,
@@ -50,113 +51,72 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "no more primitives than need be", run: primitives },
         Check { name: "no box twice", run: box_tests },
     ],
-    mutants: &[
-        Mutant {
-            says: "children are visited in the order in which they are stored, not the near one first",
-            caught_by: "the tests along a row",
-            mistake: |subject| subject.visit = stored,
-        },
-        Mutant {
-            says: "the far child comes first",
-            caught_by: "the tests against a row",
-            mistake: |subject| subject.visit = far_first,
-        },
-        Mutant {
-            says: "the far child is visited although the near one has a hit in front of it: compare its t \
-                   with the closest hit after the near child's visit",
-            caught_by: "no more primitives than need be",
-            mistake: |subject| subject.visit = no_pruning,
-        },
-        Mutant {
-            says: "only the nearer child is visited: a ray that meets its box may still miss what is in it",
-            caught_by: "the closest hit among many",
-            mistake: |subject| subject.visit = near_only,
-        },
-        Mutant {
-            says: "the walk ends with the first hit, whatever comes nearer in the other child: boxes overlap",
-            caught_by: "the closest hit among many",
-            mistake: |subject| subject.visit = first_hit,
-        },
-        Mutant {
-            says: "children are visited without a test of their boxes",
-            caught_by: "the tests along a row",
-            mistake: |subject| subject.visit = everything,
-        },
-        Mutant {
-            says: "the far child's box is tested a second time: its t is known, and only the closest hit has \
-                   changed",
-            caught_by: "no box twice",
-            mistake: |subject| subject.visit = twice,
-        },
-    ],
+    slips: slips! {
+        visit(walk, node):
+        "children are visited in the order in which they are stored, not the near one first":
+            "the tests along a row" catches
+                by(walk, node, as_stored, |walk, _, (_, child)| walk.enter(child).is_some());
+        "the far child comes first":
+            "the tests against a row" catches
+                by(walk, node, far_first, |walk, _, (t, _)| t.is_some_and(|t| t <= walk.closest()));
+        "the far child is visited although the near one has a hit in front of it: compare its t with the closest \
+         hit after the near child's visit":
+            "no more primitives than need be" catches
+                by(walk, node, near_first, |_, _, (t, _)| t.is_some());
+        "only the nearer child is visited: a ray that meets its box may still miss what is in it":
+            "the closest hit among many" catches by(walk, node, near_only, |_, _, _| true);
+        "the walk ends with the first hit, whatever comes nearer in the other child: boxes overlap":
+            "the closest hit among many" catches by(walk, node, near_first, |walk, _, (t, _)| {
+                t.is_some() && walk.closest().is_infinite()
+            });
+        "children are visited without a test of their boxes":
+            "the tests along a row" catches by(walk, node, as_stored, |_, _, _| true);
+        "the far child's box is tested a second time: its t is known, and only the closest hit has changed":
+            "no box twice" catches by(walk, node, near_first, |walk, place, (t, child)| {
+                t.is_some() && (place == 0 || walk.enter(child).is_some())
+            });
+    },
     draw,
     explain: None,
 };
 
-fn ordered(walk: &mut Walk, children: [usize; 2]) -> [(Option<f64>, usize); 2] {
-    let mut order = children.map(|child| (walk.enter(child), child));
-    if order[1].0 < order[0].0 {
-        order.reverse();
-    }
-    order
-}
+/// A child, and the t at which the ray enters its box, if that has been asked and the ray does.
+type Child = (Option<f64>, usize);
 
-fn stored(walk: &mut Walk, node: usize) {
+/// A walk into the children of a row that `goes` lets in, given the place in the row.
+fn by(
+    walk: &mut Walk,
+    node: usize,
+    row: fn(&mut Walk, [usize; 2]) -> Vec<Child>,
+    goes: fn(&mut Walk, usize, Child) -> bool,
+) {
     let Some(children) = walk.children(node) else { return walk.test_leaf(node) };
-    for child in children {
-        if walk.enter(child).is_some() {
-            stored(walk, child);
+    for (place, child) in row(walk, children).into_iter().enumerate() {
+        if goes(walk, place, child) {
+            by(walk, child.1, row, goes);
         }
     }
 }
 
-fn far_first(walk: &mut Walk, node: usize) {
-    let Some(children) = walk.children(node) else { return walk.test_leaf(node) };
-    for (enter, child) in ordered(walk, children).into_iter().rev() {
-        if enter.is_some_and(|enter| enter <= walk.closest()) {
-            far_first(walk, child);
-        }
-    }
+fn as_stored(_: &mut Walk, children: [usize; 2]) -> Vec<Child> {
+    children.map(|child| (None, child)).into()
 }
 
-fn no_pruning(walk: &mut Walk, node: usize) {
-    let Some(children) = walk.children(node) else { return walk.test_leaf(node) };
-    for (enter, child) in ordered(walk, children) {
-        if enter.is_some() {
-            no_pruning(walk, child);
-        }
+fn near_first(walk: &mut Walk, children: [usize; 2]) -> Vec<Child> {
+    let mut row = children.map(|child| (walk.enter(child), child));
+    if row[1].0 < row[0].0 {
+        row.reverse();
     }
+    row.into()
 }
 
-fn near_only(walk: &mut Walk, node: usize) {
-    let Some(children) = walk.children(node) else { return walk.test_leaf(node) };
-    if let Some((_, child)) = ordered(walk, children).into_iter().find(|(enter, _)| enter.is_some())
-    {
-        near_only(walk, child);
-    }
+fn far_first(walk: &mut Walk, children: [usize; 2]) -> Vec<Child> {
+    near_first(walk, children).into_iter().rev().collect()
 }
 
-fn first_hit(walk: &mut Walk, node: usize) {
-    let Some(children) = walk.children(node) else { return walk.test_leaf(node) };
-    for (enter, child) in ordered(walk, children) {
-        if enter.is_some() && walk.closest().is_infinite() {
-            first_hit(walk, child);
-        }
-    }
-}
-
-fn everything(walk: &mut Walk, node: usize) {
-    let Some(children) = walk.children(node) else { return walk.test_leaf(node) };
-    children.into_iter().for_each(|child| everything(walk, child));
-}
-
-fn twice(walk: &mut Walk, node: usize) {
-    let Some(children) = walk.children(node) else { return walk.test_leaf(node) };
-    for (k, (enter, child)) in ordered(walk, children).into_iter().enumerate() {
-        if enter.is_some() && (k == 0 || walk.enter(child).is_some()) {
-            twice(walk, child);
-        }
-    }
+/// The nearer of those that the ray meets.
+fn near_only(walk: &mut Walk, children: [usize; 2]) -> Vec<Child> {
+    near_first(walk, children).into_iter().find(|(t, _)| t.is_some()).into_iter().collect()
 }
 
 fn balls(shapes: impl IntoIterator<Item = Sphere>) -> Scene {
@@ -174,7 +134,7 @@ fn walked(subject: &Subject, scene: &Scene, tree: &Tree, ray: &Ray) -> (Option<H
 }
 
 /// Straight to the first ball: the root, its children, the near one's children, and one ball.
-fn in_row(subject: &Subject, origin: f64, wanted: f64) -> Result<(), Mismatch> {
+fn in_row(subject: &Subject, origin: f64, wanted: f64) -> Verdict {
     let scene = row();
     let ray = Ray::new(DVec3::X * origin, DVec3::X * (5.0 - origin).signum());
     let (hit, counts) = walked(subject, &scene, &Tree::new(&scene), &ray);
@@ -186,11 +146,11 @@ fn in_row(subject: &Subject, origin: f64, wanted: f64) -> Result<(), Mismatch> {
     same(|| case("boxes tested"), &counts.boxes, &5)
 }
 
-fn along_a_row(subject: &Subject) -> Result<(), Mismatch> {
+fn along_a_row(subject: &Subject) -> Verdict {
     in_row(subject, -1.0, 2.5)
 }
 
-fn against_a_row(subject: &Subject) -> Result<(), Mismatch> {
+fn against_a_row(subject: &Subject) -> Verdict {
     in_row(subject, 12.0, 3.5)
 }
 
@@ -211,8 +171,8 @@ fn heap() -> (Scene, Vec<Ray>) {
 /// Compares what a question about a walk gets as an answer from the subject and from the reference.
 fn over_the_heap(
     subject: &Subject,
-    judge: impl Fn(&Ray, (Option<Hit>, TestCounts), TestCounts) -> Result<(), Mismatch>,
-) -> Result<(), Mismatch> {
+    judge: impl Fn(&Ray, (Option<Hit>, TestCounts), TestCounts) -> Verdict,
+) -> Verdict {
     let (scene, rays) = heap();
     let tree = Tree::new(&scene);
     rays.iter().try_for_each(|ray| {
@@ -221,7 +181,7 @@ fn over_the_heap(
     })
 }
 
-fn closest(subject: &Subject) -> Result<(), Mismatch> {
+fn closest(subject: &Subject) -> Verdict {
     let (scene, _) = heap();
     let oracle = LinearScan::new(&scene);
     over_the_heap(subject, |ray, (hit, _), _| {
@@ -231,21 +191,20 @@ fn closest(subject: &Subject) -> Result<(), Mismatch> {
     })
 }
 
-fn no_more(what: &str, ray: &Ray, got: u64, fair: u64) -> Result<(), Mismatch> {
-    if got <= fair {
-        return Ok(());
-    }
-    let case = format!("60 balls; {}: {what}", ray.shown());
-    Err(Mismatch::new(case, got.to_string(), format!("no more than {fair}")))
+fn no_more(what: &str, ray: &Ray, got: u64, fair: u64) -> Verdict {
+    ensure(got <= fair, || {
+        let case = format!("60 balls; {}: {what}", ray.shown());
+        Mismatch::new(case, got.to_string(), format!("no more than {fair}"))
+    })
 }
 
-fn primitives(subject: &Subject) -> Result<(), Mismatch> {
+fn primitives(subject: &Subject) -> Verdict {
     over_the_heap(subject, |ray, (_, counts), fair| {
         no_more("primitives tested", ray, counts.primitives, fair.primitives)
     })
 }
 
-fn box_tests(subject: &Subject) -> Result<(), Mismatch> {
+fn box_tests(subject: &Subject) -> Verdict {
     over_the_heap(subject, |ray, (_, counts), fair| {
         no_more("boxes tested", ray, counts.boxes, fair.boxes)
     })

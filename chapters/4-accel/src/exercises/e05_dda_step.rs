@@ -5,7 +5,7 @@ use lancer_accel::Lattice;
 use lancer_core::Rgb;
 use lancer_core::geometry::Ray;
 use lancer_core::image::{Image, ImageSize};
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution, within};
+use lancer_exercise::{Card, Check, Exercise, Shown, Solution, Verdict, slips, within};
 use lancer_lesson::picture::painted;
 
 use super::Subject;
@@ -17,7 +17,6 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         name: "dda-step",
         title: "A step through the grid",
         slide: "Subdivision spatiale régulière et irrégulière",
-        file: "e05_dda_step.rs",
         stub: include_str!("../../stubs/e05_dda_step.rs"),
         functions: &["next_cell"],
         minutes: 20,
@@ -49,78 +48,37 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "two planes at once", run: tie },
         Check { name: "after a thousand cells", run: far },
     ],
-    mutants: &[
-        Mutant {
-            says: "the plane ahead is always the upper one: a negative direction meets the lower one",
-            caught_by: "backwards along each axis",
-            mistake: |subject| subject.next_cell = |l, r, c| step(l, r, c, |_| 1, sign, crossing),
-        },
-        Mutant {
-            says: "the step always goes upwards: a negative direction leads to the smaller index",
-            caught_by: "backwards along each axis",
-            mistake: |subject| subject.next_cell = |l, r, c| step(l, r, c, ahead, |_| 1, crossing),
-        },
-        Mutant {
-            says: "the grid's origin is left out: planes are at min + i · width",
-            caught_by: "forwards along each axis",
-            mistake: |subject| {
-                subject.next_cell = |lattice, ray, cell| {
-                    next_cell(&Lattice { min: DVec3::ZERO, ..*lattice }, ray, cell)
-                };
-            },
-        },
-        Mutant {
-            says: "the cells' width is left out: planes are at min + i · width",
-            caught_by: "forwards along each axis",
-            mistake: |subject| {
-                subject.next_cell = |lattice, ray, cell| {
-                    next_cell(&Lattice { width: DVec3::ONE, ..*lattice }, ray, cell)
-                };
-            },
-        },
-        Mutant {
-            says: "the distance of the plane is not divided by the direction: that is no t",
-            caught_by: "forwards along each axis",
-            mistake: |subject| {
-                subject.next_cell =
-                    |l, r, c| step(l, r, c, ahead, sign, |way, d| crossing(way, d.signum()));
-            },
-        },
-        Mutant {
-            says: "a direction of 0 is divided by: a ray in a plane gets 0 / 0, one beside it −∞ or ∞",
-            caught_by: "a direction of 0",
-            mistake: |subject| {
-                subject.next_cell = |l, r, c| step(l, r, c, ahead, sign, |way, d| way / d);
-            },
-        },
-        Mutant {
-            says: "the axis of the longest direction component is taken: cells between are left out",
-            caught_by: "forwards along each axis",
-            mistake: |subject| {
-                subject.next_cell = |lattice, ray, cell| {
-                    let axis = ray.direction.abs().max_position();
-                    let mut only = DVec3::ZERO;
-                    only[axis] = ray.direction[axis];
-                    next_cell(lattice, &Ray::new(ray.origin, only), cell)
-                };
-            },
-        },
-        Mutant {
-            says: "the end of the grid is not looked for: an index must be from 0 to resolution − 1",
-            caught_by: "out of the grid",
-            mistake: |subject| {
-                subject.next_cell = |lattice, ray, cell| {
-                    // As if the grid went on beyond every side.
-                    let more = Lattice {
-                        min: lattice.min - lattice.width,
-                        resolution: lattice.resolution + 2,
-                        ..*lattice
-                    };
-                    next_cell(&more, ray, cell + 1).map(|(cell, t)| (cell - 1, t))
-                };
-            },
-        },
-    ],
+    slips: slips! {
+        next_cell(lattice, ray, cell):
+        "the plane ahead is always the upper one: a negative direction meets the lower one":
+            "backwards along each axis" catches step(lattice, ray, cell, |_| 1, sign, crossing);
+        "the step always goes upwards: a negative direction leads to the smaller index":
+            "backwards along each axis" catches step(lattice, ray, cell, ahead, |_| 1, crossing);
+        "the grid's origin is left out: planes are at min + i · width":
+            "forwards along each axis" catches
+                next_cell(&Lattice { min: DVec3::ZERO, ..*lattice }, ray, cell);
+        "the cells' width is left out: planes are at min + i · width":
+            "forwards along each axis" catches
+                next_cell(&Lattice { width: DVec3::ONE, ..*lattice }, ray, cell);
+        "the distance of the plane is not divided by the direction: that is no t":
+            "forwards along each axis" catches
+                step(lattice, ray, cell, ahead, sign, |way, d| crossing(way, d.signum()));
+        "a direction of 0 is divided by: a ray in a plane gets 0 / 0, one beside it −∞ or ∞":
+            "a direction of 0" catches step(lattice, ray, cell, ahead, sign, |way, d| way / d);
+        "the axis of the longest direction component is taken: cells between are left out":
+            "forwards along each axis" catches {
+                let axis = ray.direction.abs().max_position();
+                let only = DVec3::AXES[axis] * ray.direction;
+                next_cell(lattice, &Ray::new(ray.origin, only), cell)
+            };
+        "the end of the grid is not looked for: an index must be from 0 to resolution − 1":
+            "out of the grid" catches {
+                // As if the grid went on beyond every side.
+                let (min, resolution) = (lattice.min - lattice.width, lattice.resolution + 2);
+                let more = Lattice { min, resolution, ..*lattice };
+                next_cell(&more, ray, cell + 1).map(|(cell, t)| (cell - 1, t))
+            };
+    },
     draw,
     explain: None,
 };
@@ -174,7 +132,7 @@ fn compare(
     ray: ([f64; 3], [f64; 3]),
     cell: [i32; 3],
     wanted: Option<([i32; 3], f64)>,
-) -> Result<(), Mismatch> {
+) -> Verdict {
     let (ray, cell) = (Ray::new(ray.0.into(), ray.1.into()), IVec3::from(cell));
     let got = (subject.next_cell)(lattice, &ray, cell);
     let wanted = wanted.map(|(cell, t)| (cell.into(), t));
@@ -193,7 +151,7 @@ fn compare(
 /// Cell (1, 2, 1) is from (−1, 2, 6) to (1, 2.5, 10).
 const MIDDLE: [f64; 3] = [-0.5, 2.125, 7.0];
 
-fn forwards(subject: &Subject) -> Result<(), Mismatch> {
+fn forwards(subject: &Subject) -> Verdict {
     let go = |direction, next, t| {
         compare(subject, &GRID, (MIDDLE, direction), [1, 2, 1], Some((next, t)))
     };
@@ -203,7 +161,7 @@ fn forwards(subject: &Subject) -> Result<(), Mismatch> {
     go([0.5, 0.125, 4.0], [1, 2, 2], 0.75)
 }
 
-fn backwards(subject: &Subject) -> Result<(), Mismatch> {
+fn backwards(subject: &Subject) -> Verdict {
     let go = |direction, next, t| {
         compare(subject, &GRID, (MIDDLE, direction), [1, 2, 1], Some((next, t)))
     };
@@ -213,7 +171,7 @@ fn backwards(subject: &Subject) -> Result<(), Mismatch> {
     go([0.5, -0.0625, -4.0], [1, 2, 0], 0.25)
 }
 
-fn zero(subject: &Subject) -> Result<(), Mismatch> {
+fn zero(subject: &Subject) -> Verdict {
     for zero in [0.0, -0.0] {
         let wanted = Some(([1, 3, 1], 1.5));
         compare(subject, &GRID, (MIDDLE, [zero, 0.25, zero]), [1, 2, 1], wanted)?;
@@ -226,7 +184,7 @@ fn zero(subject: &Subject) -> Result<(), Mismatch> {
     Ok(())
 }
 
-fn out(subject: &Subject) -> Result<(), Mismatch> {
+fn out(subject: &Subject) -> Verdict {
     let last = [4.0, 3.75, 20.0];
     compare(subject, &GRID, (last, [1.0, 0.125, 0.5]), [3, 5, 4], None)?;
     compare(subject, &GRID, (last, [1.0, 0.5, 0.5]), [3, 5, 4], None)?;
@@ -235,13 +193,13 @@ fn out(subject: &Subject) -> Result<(), Mismatch> {
 }
 
 /// y and z are met at t = 1, x at 1.5.
-fn tie(subject: &Subject) -> Result<(), Mismatch> {
+fn tie(subject: &Subject) -> Verdict {
     let wanted = Some(([1, 3, 1], 1.0));
     compare(subject, &GRID, (MIDDLE, [1.0, 0.375, 3.0]), [1, 2, 1], wanted)
 }
 
 /// Where t has been added up step by step in `f32`, or the plane is a cell off, this is another cell.
-fn far(subject: &Subject) -> Result<(), Mismatch> {
+fn far(subject: &Subject) -> Verdict {
     let lattice = Lattice {
         min: DVec3::splat(-0.1),
         width: DVec3::splat(0.1),

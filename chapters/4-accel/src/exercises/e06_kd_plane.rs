@@ -4,7 +4,7 @@ use lancer_accel::Sides;
 use lancer_core::Rgb;
 use lancer_core::geometry::Interval;
 use lancer_core::image::{Image, ImageSize};
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution};
+use lancer_exercise::{Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, ensure, slips};
 use lancer_lesson::picture::painted;
 
 use super::Subject;
@@ -16,7 +16,6 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         name: "kd-plane",
         title: "A ray and the plane of a kd-tree",
         slide: "Subdivision spatiale régulière et irrégulière",
-        file: "e06_kd_plane.rs",
         stub: include_str!("../../stubs/e06_kd_plane.rs"),
         functions: &["plane_sides"],
         minutes: 20,
@@ -47,113 +46,63 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "at the ends of the part", run: ends },
         Check { name: "in the plane", run: in_plane },
     ],
-    mutants: &[
-        Mutant {
-            says: "both sides are always visited: then the tree saves nothing",
-            caught_by: "the plane beyond the part, or before it",
-            mistake: |subject| {
-                subject.plane_sides = |split, origin, direction, inside| {
-                    let t = (split - origin) / direction;
-                    let near = Interval { max: inside.max.min(t), ..inside };
-                    Sides::Both { near, far: Interval { min: inside.min.max(t), ..inside } }
-                };
-            },
-        },
-        Mutant {
-            says: "near and far are swapped: before the plane the ray is on the near side",
-            caught_by: "the plane beyond the part, or before it",
-            mistake: |subject| {
-                subject.plane_sides = |split, origin, direction, inside| match plane_sides(
-                    split, origin, direction, inside,
-                ) {
+    slips: slips! {
+        plane_sides(split, o, d, inside):
+        "both sides are always visited: then the tree saves nothing":
+            "the plane beyond the part, or before it" catches {
+                let t = (split - o) / d;
+                parts(inside, inside.max.min(t), inside.min.max(t))
+            };
+        "near and far are swapped: before the plane the ray is on the near side":
+            "the plane beyond the part, or before it" catches
+                match plane_sides(split, o, d, inside) {
                     Sides::Near => Sides::Far,
                     Sides::Far => Sides::Near,
                     both => both,
                 };
-            },
-        },
-        Mutant {
-            says: "the parts are not cut at the plane: the far side is entered at t, and the near one left there",
-            caught_by: "the plane inside the part",
-            mistake: |subject| {
-                subject.plane_sides = |split, origin, direction, inside| match plane_sides(
-                    split, origin, direction, inside,
-                ) {
-                    Sides::Both { .. } => Sides::Both { near: inside, far: inside },
-                    one => one,
-                };
-            },
-        },
-        Mutant {
-            says: "the t of the plane is the distance: divide by the direction",
-            caught_by: "the plane inside the part",
-            mistake: |subject| {
-                subject.plane_sides =
-                    |s, o, d, inside| plane_sides(s, o, 1.0_f64.copysign(d), inside);
-            },
-        },
-        Mutant {
-            says: "the ends are excluded: a ray that meets the plane just there loses what lies in the plane",
-            caught_by: "at the ends of the part",
-            mistake: |subject| {
-                subject.plane_sides = |split, origin, direction, inside| {
-                    let t = (split - origin) / direction;
-                    if t >= inside.max {
-                        Sides::Near
-                    } else if t <= inside.min {
-                        Sides::Far
-                    } else {
-                        plane_sides(split, origin, direction, inside)
-                    }
-                };
-            },
-        },
-        Mutant {
-            says: "a ray in the plane, where t is NaN, visits the near side only: it loses what is stored on \
-                   the other",
-            caught_by: "in the plane",
-            mistake: |subject| {
-                subject.plane_sides = |split, origin, direction, inside| {
-                    if direction == 0.0 && split == origin {
-                        return Sides::Near;
-                    }
-                    plane_sides(split, origin, direction, inside)
-                };
-            },
-        },
-        Mutant {
-            says: "a ray along the plane counts as meeting it: with direction 0 the other side is never reached",
-            caught_by: "parallel to the plane",
-            mistake: |subject| {
-                subject.plane_sides = |split, origin, direction, inside| {
-                    if direction == 0.0 {
-                        return Sides::Both { near: inside, far: inside };
-                    }
-                    plane_sides(split, origin, direction, inside)
-                };
-            },
-        },
-        Mutant {
-            says: "in the plane t is NaN, and so are the parts: a comparison with NaN must leave them as they \
-                   are",
-            caught_by: "in the plane",
-            mistake: |subject| {
-                subject.plane_sides = |split, origin, direction, inside| {
-                    let t = (split - origin) / direction;
-                    match plane_sides(split, origin, direction, inside) {
-                        Sides::Both { .. } => Sides::Both {
-                            near: Interval { max: t, ..inside },
-                            far: Interval { min: t, ..inside },
-                        },
-                        one => one,
-                    }
-                };
-            },
-        },
-    ],
+        "the parts are not cut at the plane: the far side is entered at t, and the near one left there":
+            "the plane inside the part" catches
+                if_both(plane_sides(split, o, d, inside), uncut(inside));
+        "the t of the plane is the distance: divide by the direction":
+            "the plane inside the part" catches
+                plane_sides(split, o, 1.0_f64.copysign(d), inside);
+        "the ends are excluded: a ray that meets the plane just there loses what lies in the plane":
+            "at the ends of the part" catches match (split - o) / d {
+                t if t >= inside.max => Sides::Near,
+                t if t <= inside.min => Sides::Far,
+                _ => plane_sides(split, o, d, inside),
+            };
+        "a ray in the plane, where t is NaN, visits the near side only: it loses what is stored on the other":
+            "in the plane" catches
+                if d == 0.0 && split == o { Sides::Near } else { plane_sides(split, o, d, inside) };
+        "a ray along the plane counts as meeting it: with direction 0 the other side is never reached":
+            "parallel to the plane" catches
+                if d == 0.0 { uncut(inside) } else { plane_sides(split, o, d, inside) };
+        "in the plane t is NaN, and so are the parts: a comparison with NaN must leave them as they are":
+            "in the plane" catches
+                if_both(plane_sides(split, o, d, inside), cut(inside, (split - o) / d));
+    },
     draw,
     explain: None,
 };
+
+/// Both sides, the near one up to a t and the far one from another.
+fn parts(inside: Interval, end: f64, start: f64) -> Sides {
+    Sides::Both { near: Interval { max: end, ..inside }, far: Interval { min: start, ..inside } }
+}
+
+fn cut(inside: Interval, t: f64) -> Sides {
+    parts(inside, t, t)
+}
+
+fn uncut(inside: Interval) -> Sides {
+    parts(inside, inside.max, inside.min)
+}
+
+/// Another answer where the right one is both.
+fn if_both(right: Sides, other: Sides) -> Sides {
+    if matches!(right, Sides::Both { .. }) { other } else { right }
+}
 
 fn part(inside: Interval) -> String {
     format!("{} to {}", inside.min.shown(), inside.max.shown())
@@ -169,11 +118,7 @@ fn text(sides: Sides) -> String {
 
 const INSIDE: Interval = Interval { min: 0.5, max: 4.0 };
 
-fn compare(
-    subject: &Subject,
-    [split, origin, direction]: [f64; 3],
-    wanted: Sides,
-) -> Result<(), Mismatch> {
+fn compare(subject: &Subject, [split, origin, direction]: [f64; 3], wanted: Sides) -> Verdict {
     let got = (subject.plane_sides)(split, origin, direction, INSIDE);
     let close = |a: f64, b: f64| (a - b).abs() <= 1e-12;
     let same_part = |a: Interval, b: Interval| close(a.min, b.min) && close(a.max, b.max);
@@ -183,31 +128,21 @@ fn compare(
         }
         _ => got == wanted,
     };
-    if is_right {
-        return Ok(());
-    }
     // −0 is a direction of its own.
     let sign = if direction == 0.0 && direction.is_sign_negative() { "−" } else { "" };
-    let case = format!(
-        "plane at {}, origin {}, direction {sign}{}, t from {}",
-        split.shown(),
-        origin.shown(),
-        direction.shown(),
-        part(INSIDE)
-    );
-    Err(Mismatch::new(case, text(got), text(wanted)))
+    let [split, origin, direction] = [split, origin, direction].map(|x| x.shown());
+    let inside = part(INSIDE);
+    let case =
+        format!("plane at {split}, origin {origin}, direction {sign}{direction}, t from {inside}");
+    ensure(is_right, || Mismatch::new(case, text(got), text(wanted)))
 }
 
-fn at(t: f64) -> Sides {
-    Sides::Both { near: Interval { max: t, ..INSIDE }, far: Interval { min: t, ..INSIDE } }
+fn both(subject: &Subject) -> Verdict {
+    compare(subject, [3.0, -1.0, 2.0], cut(INSIDE, 2.0))?;
+    compare(subject, [3.0, 9.0, -2.0], cut(INSIDE, 3.0))
 }
 
-fn both(subject: &Subject) -> Result<(), Mismatch> {
-    compare(subject, [3.0, -1.0, 2.0], at(2.0))?;
-    compare(subject, [3.0, 9.0, -2.0], at(3.0))
-}
-
-fn one(subject: &Subject) -> Result<(), Mismatch> {
+fn one(subject: &Subject) -> Verdict {
     compare(subject, [3.0, -7.0, 2.0], Sides::Near)?;
     compare(subject, [3.0, 2.5, 2.0], Sides::Far)?;
     compare(subject, [3.0, 5.0, 2.0], Sides::Far)?;
@@ -216,21 +151,21 @@ fn one(subject: &Subject) -> Result<(), Mismatch> {
 }
 
 /// For 0 near is below, for −0 above.
-fn parallel(subject: &Subject) -> Result<(), Mismatch> {
+fn parallel(subject: &Subject) -> Verdict {
     compare(subject, [3.0, 1.0, 0.0], Sides::Near)?;
     compare(subject, [3.0, 7.0, 0.0], Sides::Far)?;
     compare(subject, [3.0, 7.0, -0.0], Sides::Near)?;
     compare(subject, [3.0, 1.0, -0.0], Sides::Far)
 }
 
-fn ends(subject: &Subject) -> Result<(), Mismatch> {
-    compare(subject, [3.0, -5.0, 2.0], at(4.0))?;
-    compare(subject, [3.0, 2.0, 2.0], at(0.5))
+fn ends(subject: &Subject) -> Verdict {
+    compare(subject, [3.0, -5.0, 2.0], cut(INSIDE, 4.0))?;
+    compare(subject, [3.0, 2.0, 2.0], cut(INSIDE, 0.5))
 }
 
-fn in_plane(subject: &Subject) -> Result<(), Mismatch> {
+fn in_plane(subject: &Subject) -> Verdict {
     for zero in [0.0, -0.0] {
-        compare(subject, [3.0, 3.0, zero], Sides::Both { near: INSIDE, far: INSIDE })?;
+        compare(subject, [3.0, 3.0, zero], uncut(INSIDE))?;
     }
     Ok(())
 }

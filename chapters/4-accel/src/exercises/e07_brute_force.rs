@@ -6,7 +6,7 @@ use lancer_core::Rgb;
 use lancer_core::geometry::{Bounds3, Interval, Shear, intersect_triangle};
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::scene::{PrimitiveId, Scene};
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Solution};
+use lancer_exercise::{Card, Check, Exercise, Mismatch, Solution, Verdict, ensure, slips};
 use lancer_lesson::picture::painted;
 
 use super::reference::search_cells;
@@ -19,7 +19,6 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         name: "brute-force",
         title: "The same answer as brute force",
         slide: "Subdivision spatiale régulière et irrégulière",
-        file: "e07_brute_force.rs",
         stub: include_str!("../../stubs/e07_brute_force.rs"),
         functions: &["search_cells"],
         minutes: 20,
@@ -52,98 +51,45 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "cells behind the hit", run: behind },
         Check { name: "no primitive twice", run: mailbox },
     ],
-    mutants: &[
-        Mutant {
-            says: "the search ends in the first cell with a hit: the hit may lie behind the cell, and others \
-                   in front of it",
-            caught_by: "a hit outside the cell",
-            mistake: |subject| {
-                subject.search_cells = |cells, test| {
-                    cells.iter().find_map(|cell| search_cells(std::slice::from_ref(cell), test))
-                };
-            },
-        },
-        Mutant {
-            says: "a hit outside the cell is thrown away; but the primitive is not tested again later",
-            caught_by: "a hit outside the cell",
-            mistake: |subject| {
-                subject.search_cells = |cells, test| {
-                    let mut k = 0;
-                    let mut inside = |primitive: PrimitiveId| {
-                        let home = |cell: &&Cell| cell.primitives.contains(&primitive);
-                        let first = cells.iter().position(|cell| home(&cell));
-                        k = first.unwrap_or(k);
-                        let end = cells.get(k + 1).map_or(f64::INFINITY, |next| next.enter);
-                        test(primitive).filter(|t| *t <= end)
-                    };
-                    search_cells(cells, &mut inside)
-                };
-            },
-        },
-        Mutant {
-            says: "of a tie the first one found wins: it must be the smaller id, or the answer depends on the \
-                   index",
-            caught_by: "a tie in one cell",
-            mistake: |subject| {
-                subject.search_cells =
-                    |cells, test| keep(cells, test, |(t, _), (best, _)| t < best);
-            },
-        },
-        Mutant {
-            says: "of a tie the last one found wins",
-            caught_by: "a tie in one cell",
-            mistake: |subject| {
-                subject.search_cells =
-                    |cells, test| keep(cells, test, |(t, _), (best, _)| t <= best);
-            },
-        },
-        Mutant {
-            says: "a cell that is entered just at the closest hit is left out: it may hold the smaller id",
-            caught_by: "a tie across two cells",
-            mistake: |subject| {
-                subject.search_cells = |cells, test| {
-                    let mut best: Option<Met> = None;
-                    for (k, cell) in cells.iter().enumerate() {
-                        if best.is_some_and(|(t, _)| cell.enter >= t) {
-                            break;
-                        }
-                        best = search_cells(&cells[..=k], test);
+    slips: slips! {
+        search_cells(cells, test):
+        "the search ends in the first cell with a hit: the hit may lie behind the cell, and others in front of it":
+            "a hit outside the cell" catches
+                cells.chunks(1).find_map(|cell| search_cells(cell, test));
+        "a hit outside the cell is thrown away; but the primitive is not tested again later":
+            "a hit outside the cell" catches search_cells(cells, &mut |primitive| {
+                let first = cells.iter().position(|cell| cell.primitives.contains(&primitive))?;
+                let end = cells.get(first + 1).map_or(f64::INFINITY, |next| next.enter);
+                test(primitive).filter(|t| *t <= end)
+            });
+        "of a tie the first one found wins: it must be the smaller id, or the answer depends on the index":
+            "a tie in one cell" catches keep(cells, test, |(t, _), (best, _)| t < best);
+        "of a tie the last one found wins":
+            "a tie in one cell" catches keep(cells, test, |(t, _), (best, _)| t <= best);
+        "a cell that is entered just at the closest hit is left out: it may hold the smaller id":
+            "a tie across two cells" catches {
+                let mut best: Option<Met> = None;
+                for (k, cell) in cells.iter().enumerate() {
+                    if best.is_some_and(|(t, _)| cell.enter >= t) {
+                        break;
                     }
-                    best
-                };
-            },
-        },
-        Mutant {
-            says: "all cells are searched: stop when the next is entered behind the closest hit",
-            caught_by: "cells behind the hit",
-            mistake: |subject| {
-                subject.search_cells = |cells, test| {
-                    let all: Vec<Cell> =
-                        cells.iter().map(|cell| Cell { enter: 0.0, ..*cell }).collect();
-                    search_cells(&all, test)
-                };
-            },
-        },
-        Mutant {
-            says: "a primitive in several cells is tested in each: remember what was tested (a mailbox)",
-            caught_by: "no primitive twice",
-            mistake: |subject| {
-                subject.search_cells = |cells, test| {
-                    keep(cells, test, |(t, id), (best, best_id)| (t, id) < (best, best_id))
-                };
-            },
-        },
-        Mutant {
-            says: "the first hit of a cell is taken, not the closest",
-            caught_by: "one cell, the closest of three",
-            mistake: |subject| {
-                subject.search_cells = |cells, test| {
-                    let mut all = cells.iter().flat_map(|cell| cell.primitives);
-                    all.find_map(|&primitive| test(primitive).map(|t| (t, primitive)))
-                };
-            },
-        },
-    ],
+                    best = search_cells(&cells[..=k], test);
+                }
+                best
+            };
+        "all cells are searched: stop when the next is entered behind the closest hit":
+            "cells behind the hit" catches {
+                let all = cells.iter().map(|cell| Cell { enter: 0.0, ..*cell });
+                search_cells(&all.collect::<Vec<_>>(), test)
+            };
+        "a primitive in several cells is tested in each: remember what was tested (a mailbox)":
+            "no primitive twice" catches keep(cells, test, |met, best| met < best);
+        "the first hit of a cell is taken, not the closest":
+            "one cell, the closest of three" catches {
+                let mut all = cells.iter().flat_map(|cell| cell.primitives);
+                all.find_map(|&primitive| test(primitive).map(|t| (t, primitive)))
+            };
+    },
     draw,
     explain: None,
 };
@@ -173,7 +119,7 @@ fn compare(
     met: &[Option<f64>],
     wanted: Option<(f64, u32)>,
     wanted_tests: Option<&[u32]>,
-) -> Result<(), Mismatch> {
+) -> Verdict {
     let lists: Vec<Vec<PrimitiveId>> =
         cells.iter().map(|(_, ids)| ids.iter().map(|&id| PrimitiveId(id)).collect()).collect();
     let given: Vec<Cell> = cells
@@ -192,60 +138,53 @@ fn compare(
         Some(t) => format!("{id} is met at {t}"),
         None => format!("{id} is missed"),
     });
-    let case = format!(
-        "cells {}; {}",
-        cells.collect::<Vec<_>>().join(", "),
-        hits.collect::<Vec<_>>().join(", ")
-    );
-    if got != wanted {
-        return Err(Mismatch::new(case, format!("{got:?}"), format!("{wanted:?}")));
-    }
+    let [cells, hits] = [cells.collect::<Vec<_>>(), hits.collect()].map(|list| list.join(", "));
+    let case = format!("cells {cells}; {hits}");
+    ensure(got == wanted, || Mismatch::new(&case, format!("{got:?}"), format!("{wanted:?}")))?;
     tested.sort_unstable();
-    match wanted_tests {
-        Some(wanted) if tested != wanted => {
-            Err(Mismatch::new(case, format!("tests of {tested:?}"), format!("tests of {wanted:?}")))
-        }
-        _ => Ok(()),
-    }
+    wanted_tests.map_or(Ok(()), |wanted| {
+        let [got, wanted] = [&*tested, wanted].map(|ids| format!("tests of {ids:?}"));
+        ensure(got == wanted, || Mismatch::new(case, got, wanted))
+    })
 }
 
-fn one_cell(subject: &Subject) -> Result<(), Mismatch> {
+fn one_cell(subject: &Subject) -> Verdict {
     let met = [Some(3.5), Some(1.5), None, Some(2.5)];
     compare(subject, &[(1.0, &[0, 2, 3, 1])], &met, Some((1.5, 1)), None)
 }
 
-fn nothing(subject: &Subject) -> Result<(), Mismatch> {
+fn nothing(subject: &Subject) -> Verdict {
     compare(subject, &[], &[], None, Some(&[]))?;
     compare(subject, &[(1.0, &[0]), (2.0, &[]), (3.0, &[1])], &[None, None], None, Some(&[0, 1]))
 }
 
 /// Primitive 0 reaches into the first cell, and is met in the third, behind primitive 1, or in front of
 /// nothing at all.
-fn outside(subject: &Subject) -> Result<(), Mismatch> {
+fn outside(subject: &Subject) -> Verdict {
     let cells: [(f64, &[u32]); 3] = [(1.0, &[0]), (2.0, &[1]), (3.0, &[0])];
     compare(subject, &cells, &[Some(3.5), Some(2.5)], Some((2.5, 1)), None)?;
     compare(subject, &cells, &[Some(3.5), None], Some((3.5, 0)), None)
 }
 
-fn tie(subject: &Subject) -> Result<(), Mismatch> {
+fn tie(subject: &Subject) -> Verdict {
     let met = [None, Some(1.5), Some(1.5), Some(1.5)];
     compare(subject, &[(1.0, &[2, 1, 3])], &met, Some((1.5, 1)), None)?;
     compare(subject, &[(1.0, &[1, 3, 2])], &met, Some((1.5, 1)), None)
 }
 
 /// Both are met just where the second cell begins.
-fn tie_across(subject: &Subject) -> Result<(), Mismatch> {
+fn tie_across(subject: &Subject) -> Verdict {
     let met = [Some(2.0), Some(2.0)];
     compare(subject, &[(1.0, &[1]), (2.0, &[0])], &met, Some((2.0, 0)), None)
 }
 
-fn behind(subject: &Subject) -> Result<(), Mismatch> {
+fn behind(subject: &Subject) -> Verdict {
     let met = [Some(1.5), Some(2.5), Some(3.5)];
     let cells: [(f64, &[u32]); 3] = [(1.0, &[0]), (2.0, &[1]), (3.0, &[2])];
     compare(subject, &cells, &met, Some((1.5, 0)), Some(&[0]))
 }
 
-fn mailbox(subject: &Subject) -> Result<(), Mismatch> {
+fn mailbox(subject: &Subject) -> Verdict {
     let met = [None, None, Some(3.5)];
     let cells: [(f64, &[u32]); 4] =
         [(1.0, &[0, 1]), (2.0, &[1, 0]), (3.0, &[1, 2]), (3.25, &[0, 2])];

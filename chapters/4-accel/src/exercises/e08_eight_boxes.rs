@@ -5,7 +5,7 @@ use lancer_core::Rgb;
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::sampling::Uniform;
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Mutant, Shown, Solution};
+use lancer_exercise::{Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, ensure, slips};
 use lancer_lesson::picture::painted;
 
 use super::reference::{eight_boxes, near_to_far};
@@ -17,7 +17,6 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         name: "eight-boxes",
         title: "Eight boxes at once",
         slide: "Accélération matérielle",
-        file: "e08_eight_boxes.rs",
         stub: include_str!("../../stubs/e08_eight_boxes.rs"),
         functions: &["eight_boxes", "near_to_far"],
         minutes: 25,
@@ -59,83 +58,44 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "only the lanes that are met", run: only_met },
         Check { name: "entered at the same t", run: ties },
     ],
-    mutants: &[
-        Mutant {
-            says: "the lowest planes are taken as first, the highest as last: where the inverse is negative a ray \
-                   meets the highest first",
-            caught_by: "backwards along each axis",
-            mistake: |subject| {
-                subject.eight_boxes =
-                    |planes, ray, max| clip(planes, ray, [0.0, max], |low, high, _| [low, high]);
-            },
-        },
-        Mutant {
-            says: "`min` and `max` sort the two planes: in an empty lane, lowest ∞ and highest −∞, that makes \
-                   a box of everything",
-            caught_by: "empty lanes",
-            mistake: |subject| {
-                subject.eight_boxes = |planes, ray, max| {
-                    clip(planes, ray, [0.0, max], |low, high, _| [low.min(high), low.max(high)])
-                };
-            },
-        },
-        Mutant {
-            says: "the range does not begin at 0: boxes behind the origin count",
-            caught_by: "behind the origin, and around it",
-            mistake: |subject| {
-                subject.eight_boxes = |planes, ray, max| {
-                    clip(planes, ray, [f32::NEG_INFINITY, max], |low, high, turned| {
-                        if turned { [high, low] } else { [low, high] }
-                    })
-                };
-            },
-        },
-        Mutant {
-            says: "`max` is not looked at: boxes beyond the closest hit count",
-            caught_by: "up to max, and beyond it",
-            mistake: |subject| {
-                subject.eight_boxes = |planes, ray, _| eight_boxes(planes, ray, f32::INFINITY);
-            },
-        },
-        Mutant {
-            says: "the near offset is taken for the last planes: a box that is only touched may, once rounded, be left \
-                   before it is entered",
-            caught_by: "a corner that eight boxes share",
-            mistake: |subject| {
-                subject.eight_boxes = |planes, ray, max| {
-                    eight_boxes(planes, &PreparedRay { far_offset: ray.near_offset, ..*ray }, max)
-                };
-            },
-        },
-        Mutant {
-            says: "the far offset is taken for the first planes: boxes are entered too late, and one that begins at \
-                   max is lost",
-            caught_by: "up to max, and beyond it",
-            mistake: |subject| {
-                subject.eight_boxes = |planes, ray, max| {
-                    eight_boxes(planes, &PreparedRay { near_offset: ray.far_offset, ..*ray }, max)
-                };
-            },
-        },
-        Mutant {
-            says: "all eight lanes are put in order, whether their bit is set or not",
-            caught_by: "only the lanes that are met",
-            mistake: |subject| subject.near_to_far = |near, _| near_to_far(near, 0xff),
-        },
-        Mutant {
-            says: "of lanes at the same t the larger number comes first: sort near to far, from the lower lanes \
-                   on, by a sort that keeps equal ones in order",
-            caught_by: "entered at the same t",
-            mistake: |subject| {
-                subject.near_to_far = |near, met| {
-                    let mut lanes = near_to_far(near, met);
-                    lanes.reverse();
-                    lanes.sort_by(|&a, &b| near[a].total_cmp(&near[b]));
-                    lanes
-                };
-            },
-        },
-    ],
+    slips: slips! {
+        eight_boxes(planes, ray, max):
+        "the lowest planes are taken as first, the highest as last: where the inverse is negative a ray meets the \
+         highest first":
+            "backwards along each axis" catches
+                clip(planes, ray, [0.0, max], |low, high, _| [low, high]);
+        "`min` and `max` sort the two planes: in an empty lane, lowest ∞ and highest −∞, that makes a box of \
+         everything":
+            "empty lanes" catches
+                clip(planes, ray, [0.0, max], |low, high, _| [low.min(high), low.max(high)]);
+        "the range does not begin at 0: boxes behind the origin count":
+            "behind the origin, and around it" catches
+                clip(planes, ray, [f32::NEG_INFINITY, max], |low, high, turned| {
+                    if turned { [high, low] } else { [low, high] }
+                });
+        "`max` is not looked at: boxes beyond the closest hit count":
+            "up to max, and beyond it" catches eight_boxes(planes, ray, f32::INFINITY);
+        "the near offset is taken for the last planes: a box that is only touched may, once rounded, be left \
+         before it is entered":
+            "a corner that eight boxes share" catches
+                eight_boxes(planes, &PreparedRay { far_offset: ray.near_offset, ..*ray }, max);
+        "the far offset is taken for the first planes: boxes are entered too late, and one that begins at max is \
+         lost":
+            "up to max, and beyond it" catches
+                eight_boxes(planes, &PreparedRay { near_offset: ray.far_offset, ..*ray }, max);
+
+        near_to_far(near, met):
+        "all eight lanes are put in order, whether their bit is set or not":
+            "only the lanes that are met" catches near_to_far(near, 0xff);
+        "of lanes at the same t the larger number comes first: sort near to far, from the lower lanes on, by a \
+         sort that keeps equal ones in order":
+            "entered at the same t" catches {
+                let mut lanes = near_to_far(near, met);
+                lanes.reverse();
+                lanes.sort_by(|&a, &b| near[a].total_cmp(&near[b]));
+                lanes
+            };
+    },
     draw,
     explain: None,
 };
@@ -172,6 +132,12 @@ fn rows(boxes: &Boxes) -> [Lanes; 6] {
     })
 }
 
+/// The way from a point into the octant of a lane, a bit for each axis.
+fn octant(lane: usize, size: f64) -> DVec3 {
+    let side = |axis: usize| if lane >> axis & 1 == 1 { size } else { -size };
+    DVec3::new(side(0), side(1), side(2))
+}
+
 fn bounds(min: [f64; 3], max: [f64; 3]) -> Option<Bounds3> {
     Some(Bounds3 { min: min.into(), max: max.into() })
 }
@@ -184,22 +150,17 @@ fn case(lane: usize, boxes: &Boxes, ray: &Ray, max: f32) -> String {
     format!("lane {lane}: {place}; {}, max {max}", ray.shown())
 }
 
-fn judge_met(
-    case: impl Fn() -> String,
-    met: u32,
-    lane: usize,
-    wanted: bool,
-) -> Result<(), Mismatch> {
+fn judge_met(case: impl Fn() -> String, met: u32, lane: usize, wanted: bool) -> Verdict {
     let shown = |bit| if bit { "met" } else { "not met" };
     let got = met >> lane & 1 == 1;
-    if got == wanted { Ok(()) } else { Err(Mismatch::new(case(), shown(got), shown(wanted))) }
+    ensure(got == wanted, || Mismatch::new(case(), shown(got), shown(wanted)))
 }
 
 /// The pad of no ray of the checks moves a t by more than this.
 const SLACK: f64 = 1e-4;
 
 /// A ray may enter a box too early by the pad, but never too late, since the box might then be skipped.
-fn judge_near(case: impl Fn() -> String, got: f32, wanted: f64) -> Result<(), Mismatch> {
+fn judge_near(case: impl Fn() -> String, got: f32, wanted: f64) -> Verdict {
     if ((wanted - SLACK).max(0.0)..=wanted).contains(&f64::from(got)) {
         return Ok(());
     }
@@ -219,7 +180,7 @@ fn compare(
     ray: &Ray,
     max: f32,
     wanted: [Option<f64>; 8],
-) -> Result<(), Mismatch> {
+) -> Verdict {
     let (near, met) = (subject.eight_boxes)(&rows(boxes), &PreparedRay::new(ray), max);
     (0..8).try_for_each(|lane| {
         let case = || case(lane, boxes, ray, max);
@@ -244,13 +205,13 @@ fn scattered() -> (Boxes, Ray, [Option<f64>; 8]) {
     (boxes, Ray::new(DVec3::NEG_ONE, DVec3::new(1.0, 0.5, 0.25)), t)
 }
 
-fn forwards(subject: &Subject) -> Result<(), Mismatch> {
+fn forwards(subject: &Subject) -> Verdict {
     let (boxes, ray, t) = scattered();
     compare(subject, &boxes, &ray, 8.0, t)
 }
 
 /// The same in a mirror, which turns one direction, and then all of them.
-fn backwards(subject: &Subject) -> Result<(), Mismatch> {
+fn backwards(subject: &Subject) -> Verdict {
     let (boxes, ray, t) = scattered();
     [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE].into_iter().try_for_each(|turned| {
         let mirror = 1.0 - 2.0 * turned;
@@ -265,7 +226,7 @@ fn backwards(subject: &Subject) -> Result<(), Mismatch> {
     })
 }
 
-fn empty(subject: &Subject) -> Result<(), Mismatch> {
+fn empty(subject: &Subject) -> Verdict {
     let (mut boxes, ray, mut t) = scattered();
     for lane in [0, 5, 7] {
         (boxes[lane], t[lane]) = (None, None);
@@ -280,7 +241,7 @@ fn empty(subject: &Subject) -> Result<(), Mismatch> {
     Ok(())
 }
 
-fn behind(subject: &Subject) -> Result<(), Mismatch> {
+fn behind(subject: &Subject) -> Verdict {
     let boxes = [
         bounds([-0.5, -0.5, -0.5], [-0.25, 0.5, 0.5]),
         bounds([-0.5, -0.75, -0.5], [0.5, -0.25, 0.5]),
@@ -298,7 +259,7 @@ fn behind(subject: &Subject) -> Result<(), Mismatch> {
 }
 
 /// A row of boxes that begin at t = 1, 1.25, 1.5 and so on.
-fn beyond(subject: &Subject) -> Result<(), Mismatch> {
+fn beyond(subject: &Subject) -> Verdict {
     let boxes = [0.0, 0.25, 0.5, 0.515625, 0.75, -0.25, 0.625, 0.875]
         .map(|x| bounds([x, -0.5, -0.5], [x + 0.125, 0.5, 0.5]));
     let ray = Ray::new(DVec3::NEG_X, DVec3::new(1.0, 0.125, -0.125));
@@ -307,7 +268,7 @@ fn beyond(subject: &Subject) -> Result<(), Mismatch> {
 }
 
 /// Along each axis in turn the ray does not move, at 0.25 from the middle, where boxes begin or end.
-fn in_a_face(subject: &Subject) -> Result<(), Mismatch> {
+fn in_a_face(subject: &Subject) -> Verdict {
     let slabs = [
         [0.25, 0.5],
         [0.0, 0.25],
@@ -337,7 +298,7 @@ fn in_a_face(subject: &Subject) -> Result<(), Mismatch> {
 
 /// The point, the direction and t are dyadic, so the origin is exact and the ray passes through the point:
 /// it meets all boxes around it, and each of them no later than there.
-fn corner(subject: &Subject) -> Result<(), Mismatch> {
+fn corner(subject: &Subject) -> Verdict {
     let mut random = Uniform::new(48, 0, 0);
     let mut whole = |from: f64, to: f64| (from + random.number() * (to - from)).round();
     for _ in 0..2000 {
@@ -350,8 +311,7 @@ fn corner(subject: &Subject) -> Result<(), Mismatch> {
         }
         let ray = Ray::new(point - t * direction, direction);
         let boxes: Boxes = std::array::from_fn(|lane| {
-            let side = |axis: usize| if lane >> axis & 1 == 1 { 0.25 } else { -0.25 };
-            let far = point + DVec3::new(side(0), side(1), side(2));
+            let far = point + octant(lane, 0.25);
             Some(Bounds3 { min: point.min(far), max: point.max(far) })
         });
         let max = t as f32;
@@ -374,7 +334,7 @@ fn corner(subject: &Subject) -> Result<(), Mismatch> {
 const PAD: f64 = 1e-5;
 
 /// What `f64` meets must be met, and nothing that it misses by more than the pad.
-fn one_by_one(subject: &Subject) -> Result<(), Mismatch> {
+fn one_by_one(subject: &Subject) -> Verdict {
     let mut random = Uniform::new(49, 0, 0);
     // Exact in `f32`.
     let mut point = || DVec3::from_array(std::array::from_fn(|_| random.number() - 0.5)).as_vec3();
@@ -408,33 +368,25 @@ fn one_by_one(subject: &Subject) -> Result<(), Mismatch> {
     Ok(())
 }
 
-fn compare_order(
-    subject: &Subject,
-    near: Lanes,
-    met: u32,
-    wanted: &[usize],
-) -> Result<(), Mismatch> {
+fn compare_order(subject: &Subject, near: Lanes, met: u32, wanted: &[usize]) -> Verdict {
     let got = (subject.near_to_far)(&near, met);
-    if got == wanted {
-        return Ok(());
-    }
     let case = format!("near {near:?}, met {met:#010b}: the order of the lanes");
-    Err(Mismatch::new(case, format!("{got:?}"), format!("{wanted:?}")))
+    ensure(got == wanted, || Mismatch::new(case, format!("{got:?}"), format!("{wanted:?}")))
 }
 
 const NEAR: Lanes = [0.5, 0.125, 9.0, 0.25, 7.0, 0.0, 8.0, 4.0];
 
-fn order(subject: &Subject) -> Result<(), Mismatch> {
+fn order(subject: &Subject) -> Verdict {
     compare_order(subject, NEAR, 0xff, &[5, 1, 3, 0, 7, 4, 6, 2])
 }
 
-fn only_met(subject: &Subject) -> Result<(), Mismatch> {
+fn only_met(subject: &Subject) -> Verdict {
     compare_order(subject, NEAR, 0b1101_0101, &[0, 7, 4, 6, 2])?;
     compare_order(subject, NEAR, 0b1000_0000, &[7])?;
     compare_order(subject, NEAR, 0, &[])
 }
 
-fn ties(subject: &Subject) -> Result<(), Mismatch> {
+fn ties(subject: &Subject) -> Verdict {
     let near = [2.0, 1.0, 2.0, 0.0, 1.0, 0.0, 2.0, 0.5];
     compare_order(subject, near, 0xff, &[3, 5, 7, 1, 4, 0, 2, 6])?;
     compare_order(subject, [0.0; 8], 0b0110_1100, &[2, 3, 5, 6])
@@ -450,10 +402,6 @@ impl Nodes {
     /// Boxes of many sizes in a grid of 4³ places, one in four of which is empty.
     fn new() -> Self {
         let mut random = Uniform::new(50, 0, 0);
-        let octant = |lane: usize, size: f64| {
-            let side = |axis: usize| if lane >> axis & 1 == 1 { size } else { -size };
-            DVec3::new(side(0), side(1), side(2))
-        };
         let boxes: [Boxes; 8] = std::array::from_fn(|outer| {
             std::array::from_fn(|inner| {
                 let center = octant(outer, 0.5) + octant(inner, 0.25);
