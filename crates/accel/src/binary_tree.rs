@@ -1,7 +1,6 @@
 use std::ops::Range;
 
-use lancer_core::geometry::{Interval, Ray};
-use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
+use lancer_core::intersector::{Hit, Observer, Probe, Query, Traversal, Wanted};
 use lancer_core::scene::{PrimitiveId, Scene};
 
 use crate::four_boxes::{FourSlabs, Frame, FrameBox};
@@ -137,8 +136,7 @@ struct Descent<'a, O> {
     /// Where the closest hit so far is, in the units of the boxes.
     max: f32,
     probe: Probe<'a>,
-    /// Whether the first hit ends the walk.
-    any: bool,
+    wanted: Wanted,
     observer: &'a mut O,
 }
 
@@ -156,7 +154,7 @@ impl<O: Observer> Descent<'_, O> {
         if node.is_leaf() {
             for &primitive in &tree.primitives[node.leaf()] {
                 self.observer.primitive_test(primitive);
-                if self.probe.test(primitive) && self.any {
+                if self.probe.test(primitive) && self.wanted == Wanted::Any {
                     return true;
                 }
             }
@@ -177,21 +175,15 @@ impl<O: Observer> Descent<'_, O> {
 
 impl Traversal for BinaryTree<'_> {
     /// Visits the primitives whose boxes the ray meets, the nearer child first, until any hit will do.
-    fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        observer: &mut O,
-    ) -> Option<Hit> {
+    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
         let root = self.nodes.first()?;
-        let slabs = FourSlabs::new(ray, &self.frame);
+        let slabs = FourSlabs::new(&query.ray, &self.frame);
         let mut descent = Descent {
             tree: self,
             slabs,
-            max: slabs.parameter(range.max),
-            probe: Probe::new(self.scene, ray, range),
-            any,
+            max: slabs.parameter(query.range.max),
+            probe: Probe::new(self.scene, &query.ray, query.range),
+            wanted: query.wanted,
             observer,
         };
         if descent.enter(root).is_some() {

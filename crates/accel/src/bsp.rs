@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
-use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
+use lancer_core::intersector::{Hit, Observer, Probe, Query, Traversal, Wanted};
 use lancer_core::scene::{PrimitiveId, Scene};
 use smallvec::SmallVec;
 
@@ -364,12 +364,11 @@ impl<'s> BspTree<'s> {
     #[inline(always)]
     fn walk_leaves<O: Observer>(
         &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
+        query: &Query,
         observer: &mut O,
         mut enter_leaf: impl FnMut(usize),
     ) -> Option<Hit> {
+        let &Query { ref ray, range, wanted } = query;
         let mut probe = Probe::new(self.scene, ray, range);
         // Rounding may move the ray, or the polygon that it meets, across a plane.
         let thickness = thickness(ray, self.bounds) + 2.0 * self.tolerance;
@@ -379,7 +378,7 @@ impl<'s> BspTree<'s> {
         let test_all = |probe: &mut Probe, observer: &mut O, node: &Node| {
             self.primitives_of(node).iter().any(|&primitive| {
                 observer.primitive_test(primitive);
-                probe.test(primitive) && any
+                probe.test(primitive) && wanted == Wanted::Any
             })
         };
         let mut stack = Stack::new();
@@ -463,7 +462,7 @@ impl<'s> BspTree<'s> {
     /// The numbers of the cells that the search for the closest hit visits, in this order.
     pub fn visited_leaves(&self, ray: &Ray, range: Interval) -> Vec<usize> {
         let mut visited = Vec::new();
-        self.walk_leaves(ray, range, false, &mut (), |node| visited.push(node));
+        self.walk_leaves(&Query::closest(*ray, range), &mut (), |node| visited.push(node));
         visited.into_iter().map(|node| self.number(node)).collect()
     }
 
@@ -534,14 +533,8 @@ impl<'s> BspTree<'s> {
 impl Traversal for BspTree<'_> {
     /// Visits the cells along the ray until one holds a hit, or any will do.
     #[inline]
-    fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        observer: &mut O,
-    ) -> Option<Hit> {
-        self.walk_leaves(ray, range, any, observer, |_| {})
+    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
+        self.walk_leaves(query, observer, |_| {})
     }
 }
 

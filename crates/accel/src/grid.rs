@@ -4,7 +4,7 @@ mod beam;
 
 use glam::{DVec3, IVec3, UVec3};
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
-use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
+use lancer_core::intersector::{BeamIndex, Hit, Observer, Probe, Query, Traversal};
 use lancer_core::scene::{PrimitiveId, Scene};
 
 use crate::cells::{Cell, RayCells, search};
@@ -215,18 +215,17 @@ impl Traversal for Grid<'_> {
     /// Visits the primitives of cell after cell along the ray, until any hit will do or the closest is
     /// nearer than the next cell.
     #[inline]
-    fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        observer: &mut O,
-    ) -> Option<Hit> {
+    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
+        let &Query { ref ray, range, wanted } = query;
         let probe = Probe::new(self.scene, ray, range);
         match self.path(ray, range)? {
-            Path::Line(line) => search(line, probe, self.mailboxing, any, observer),
-            Path::Slices(slices) => search(slices, probe, self.mailboxing, any, observer),
+            Path::Line(line) => search(line, probe, self.mailboxing, wanted, observer),
+            Path::Slices(slices) => search(slices, probe, self.mailboxing, wanted, observer),
         }
+    }
+
+    fn beams(&self) -> Option<&dyn BeamIndex> {
+        Some(self)
     }
 }
 

@@ -4,7 +4,7 @@ mod sides;
 
 use glam::DVec3;
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
-use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
+use lancer_core::intersector::{Hit, Observer, Probe, Query, Traversal, Wanted};
 use lancer_core::scene::{PrimitiveId, Scene};
 use smallvec::SmallVec;
 
@@ -357,12 +357,11 @@ impl<'s> KdTree<'s> {
     #[inline(always)]
     fn walk_leaves<O: Observer>(
         &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
+        query: &Query,
         observer: &mut O,
         mut enter_leaf: impl FnMut(usize),
     ) -> Option<Hit> {
+        let &Query { ref ray, range, wanted } = query;
         let mut probe = Probe::new(self.scene, ray, range);
         let thickness = thickness(ray, self.bounds);
         let bounds = self.bounds.grown(thickness);
@@ -394,7 +393,7 @@ impl<'s> KdTree<'s> {
                     enter_leaf(index);
                     for &primitive in &self.primitives[first as usize..][..count as usize] {
                         observer.primitive_test(primitive);
-                        if probe.test(primitive) && any {
+                        if probe.test(primitive) && wanted == Wanted::Any {
                             return probe.best();
                         }
                     }
@@ -451,7 +450,7 @@ impl<'s> KdTree<'s> {
     /// [`KdTree::leaves`].
     pub fn visited_leaves(&self, ray: &Ray, range: Interval) -> Vec<usize> {
         let mut visited = Vec::new();
-        self.walk_leaves(ray, range, false, &mut (), |node| visited.push(node));
+        self.walk_leaves(&Query::closest(*ray, range), &mut (), |node| visited.push(node));
         let is_leaf = |node: &&Node| matches!(node, Node::Leaf { .. });
         visited.iter().map(|&node| self.nodes[..node].iter().filter(is_leaf).count()).collect()
     }
@@ -523,14 +522,8 @@ impl<'s> KdTree<'s> {
 impl Traversal for KdTree<'_> {
     /// Visits the cells along the ray until one holds a hit, or any will do.
     #[inline]
-    fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        observer: &mut O,
-    ) -> Option<Hit> {
-        self.walk_leaves(ray, range, any, observer, |_| {})
+    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
+        self.walk_leaves(query, observer, |_| {})
     }
 }
 

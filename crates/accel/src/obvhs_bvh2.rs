@@ -1,6 +1,5 @@
 use glam::Vec3A;
-use lancer_core::geometry::{Interval, Ray};
-use lancer_core::intersector::{Hit, Observer, Traversal};
+use lancer_core::intersector::{Hit, Observer, Query, Traversal};
 use lancer_core::scene::{PrimitiveId, Scene};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
@@ -83,13 +82,7 @@ impl Traversal for ObvhsBvh2<'_> {
     /// Visits the primitives whose boxes the ray meets, the leaves of a node before its other
     /// children and the nearest of those next, until any hit will do.
     #[inline]
-    fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        observer: &mut O,
-    ) -> Option<Hit> {
-        self.0.walk(ray, range, any, observer)
+    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
+        self.0.walk(query, observer)
     }
 }

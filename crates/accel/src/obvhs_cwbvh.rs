@@ -1,6 +1,5 @@
 use glam::Vec4;
-use lancer_core::geometry::{Interval, Ray};
-use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
+use lancer_core::intersector::{Hit, Observer, Probe, Query, Traversal, Wanted};
 use lancer_core::scene::{PrimitiveId, Scene};
 use obvhs::BvhBuildParams;
 use obvhs::cwbvh::builder::build_cwbvh;
@@ -114,16 +113,10 @@ impl Traversal for ObvhsCwbvh<'_> {
     /// Visits the primitives whose boxes the ray meets, the leaves of a node before its other
     /// children and the nearest of those next, until any hit will do.
     #[inline]
-    fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        observer: &mut O,
-    ) -> Option<Hit> {
-        let mut probe = Probe::new(self.scene, ray, range);
-        let slabs = FourSlabs::new(ray, &self.frame);
-        let mut max = slabs.parameter(range.max);
+    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
+        let mut probe = Probe::new(self.scene, &query.ray, query.range);
+        let slabs = FourSlabs::new(&query.ray, &self.frame);
+        let mut max = slabs.parameter(query.range.max);
         let mut pending = Pending::default();
         let mut next = self.nodes.first();
         while let Some(node) = next {
@@ -144,7 +137,7 @@ impl Traversal for ObvhsCwbvh<'_> {
                 }
                 for &primitive in self.leaf(node, slot) {
                     observer.primitive_test(primitive);
-                    if probe.test(primitive) && any {
+                    if probe.test(primitive) && query.wanted == Wanted::Any {
                         return probe.best();
                     }
                 }

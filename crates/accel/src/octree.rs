@@ -2,7 +2,7 @@ use std::collections::VecDeque;
 
 use glam::DVec3;
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
-use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
+use lancer_core::intersector::{Hit, Observer, Probe, Query, Traversal};
 use lancer_core::scene::{PrimitiveId, Scene};
 use smallvec::SmallVec;
 
@@ -294,15 +294,10 @@ impl Traversal for Octree<'_> {
     /// Visits the primitives of leaf after leaf along the ray, until any hit will do or the closest is
     /// nearer than all other cubes.
     #[inline]
-    fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        observer: &mut O,
-    ) -> Option<Hit> {
+    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
+        let &Query { ref ray, range, wanted } = query;
         let descent = self.descent(ray, range)?;
-        search(descent, Probe::new(self.scene, ray, range), self.mailboxing, any, observer)
+        search(descent, Probe::new(self.scene, ray, range), self.mailboxing, wanted, observer)
     }
 }
 

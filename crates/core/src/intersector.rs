@@ -20,6 +20,40 @@ pub struct Hit {
     pub barycentric: DVec3,
 }
 
+/// Which hit answers a [`Query`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// The closest.
+    Closest,
+    /// Any: the search ends with the one met first.
+    Any,
+}
+
+/// What an index is asked: whether and where a ray meets something.
+#[derive(Clone, Copy, Debug)]
+pub struct Query {
+    /// The ray.
+    pub ray: Ray,
+    /// Where it looks.
+    pub range: Interval,
+    /// What answers it.
+    pub wanted: Wanted,
+}
+
+impl Query {
+    /// Asks for the closest hit.
+    #[inline]
+    pub const fn closest(ray: Ray, range: Interval) -> Self {
+        Self { ray, range, wanted: Wanted::Closest }
+    }
+
+    /// Asks for any hit.
+    #[inline]
+    pub const fn any(ray: Ray, range: Interval) -> Self {
+        Self { ray, range, wanted: Wanted::Any }
+    }
+}
+
 /// An index of a scene's primitives.
 ///
 /// An answer does not depend on the index: of several primitives at the same `t` the one with the
@@ -43,54 +77,44 @@ pub trait Intersector: Sync {
 
     /// Whether the ray meets anything in `range`.
     fn occluded(&self, ray: &Ray, range: Interval) -> bool;
+
+    /// Answers as [`Intersector::closest_hit`] or, if any hit will do, as [`Intersector::occluded`] with the
+    /// hit met first, and tells the observer its work.
+    fn watch(&self, query: &Query, observer: &mut dyn Observer) -> Option<Hit>;
+
+    /// The same index as beams ask it, if they can.
+    fn beams(&self) -> Option<&dyn BeamIndex> {
+        None
+    }
 }
 
-/// An [`Intersector`] whose work can be watched, whatever its type.
-pub trait Observable: Intersector {
-    /// Answers as [`Intersector::closest_hit`] or, if any hit will do, as [`Intersector::occluded`]: with
-    /// the hit met first.
-    fn watch(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        observer: &mut dyn Observer,
-    ) -> Option<Hit>;
-}
-
-/// An index whose every question is one traversal, which can be watched. It is an [`Intersector`], and
-/// [`Observable`].
+/// An index whose every question is one traversal. It is an [`Intersector`].
 pub trait Traversal: Sync {
-    /// Visits primitives that the ray may meet in `range` until none can be nearer than the closest met
-    /// or, if `any` hit will do, one is met. Returns the closest.
-    fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        observer: &mut O,
-    ) -> Option<Hit>;
+    /// Visits primitives that the ray may meet in its range until none can be nearer than the closest met
+    /// or, if any hit will do, one is met. Returns the closest.
+    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit>;
+
+    /// What [`Intersector::beams`] says.
+    fn beams(&self) -> Option<&dyn BeamIndex> {
+        None
+    }
 }
 
 impl<T: Traversal> Intersector for T {
     fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
-        self.walk(ray, range, false, &mut ())
+        self.walk(&Query::closest(*ray, range), &mut ())
     }
 
     fn occluded(&self, ray: &Ray, range: Interval) -> bool {
-        self.walk(ray, range, true, &mut ()).is_some()
+        self.walk(&Query::any(*ray, range), &mut ()).is_some()
     }
-}
 
-impl<T: Traversal> Observable for T {
-    fn watch(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        mut observer: &mut dyn Observer,
-    ) -> Option<Hit> {
-        self.walk(ray, range, any, &mut observer)
+    fn watch(&self, query: &Query, mut observer: &mut dyn Observer) -> Option<Hit> {
+        self.walk(query, &mut observer)
+    }
+
+    fn beams(&self) -> Option<&dyn BeamIndex> {
+        Traversal::beams(self)
     }
 }
 
@@ -306,21 +330,19 @@ impl<'s> LinearScan<'s> {
 impl Traversal for LinearScan<'_> {
     /// Visits the primitives in order until any hit will do.
     #[inline]
-    fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        observer: &mut O,
-    ) -> Option<Hit> {
-        let mut probe = Probe::new(self.scene, ray, range);
+    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
+        let mut probe = Probe::new(self.scene, &query.ray, query.range);
         for primitive in self.scene.primitives() {
             observer.primitive_test(primitive);
-            if probe.test(primitive) && any {
+            if probe.test(primitive) && query.wanted == Wanted::Any {
                 break;
             }
         }
         probe.best()
+    }
+
+    fn beams(&self) -> Option<&dyn BeamIndex> {
+        Some(self)
     }
 }
 

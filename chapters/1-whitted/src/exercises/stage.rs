@@ -3,7 +3,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use glam::DVec3;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::illumination::Reflectance;
-use lancer_core::intersector::{Hit, Intersector};
+use lancer_core::intersector::{Hit, Intersector, Observer, Query, Traversal, Wanted};
 use lancer_core::scene::Scene;
 use lancer_core::world::{PointSource, SurfacePoint};
 use lancer_exercise::Shown;
@@ -97,14 +97,16 @@ fn starts_on(corners: [DVec3; 3], ray: &Ray, t: f64) -> bool {
     height <= 64.0 * f64::EPSILON * reach.into_iter().fold(0.0, f64::max)
 }
 
-impl Intersector for Stage<'_> {
-    fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
-        self.count_traced();
-        self.hits(ray, range).min_by(|a, b| a.t.total_cmp(&b.t))
-    }
-
-    fn occluded(&self, ray: &Ray, range: Interval) -> bool {
-        self.hits(ray, range).next().is_some()
+impl Traversal for Stage<'_> {
+    fn walk<O: Observer>(&self, query: &Query, _observer: &mut O) -> Option<Hit> {
+        let mut hits = self.hits(&query.ray, query.range);
+        match query.wanted {
+            Wanted::Closest => {
+                self.count_traced();
+                hits.min_by(|a, b| a.t.total_cmp(&b.t))
+            }
+            Wanted::Any => hits.next(),
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use lancer_accel::Grid;
 use lancer_core::generate::{cube, icosphere};
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::image::ImageSize;
-use lancer_core::intersector::{Hit, Intersector, LinearScan};
+use lancer_core::intersector::{Hit, Intersector, LinearScan, Query};
 use lancer_core::sampling::Uniform;
 use lancer_core::scene::{Mesh, Scene};
 use lancer_figure::{
@@ -16,7 +16,7 @@ use lancer_figure::{
 use super::is_off;
 use crate::aimed::{CLASSES, aimed};
 use crate::naive::{BareTree, LibraryWalk, first_hit_wins};
-use crate::rays::{Kind, Query, Rays};
+use crate::rays::{Kind, Rays};
 use crate::scenes::family;
 use lancer_accel::structures::{STRUCTURES, structure};
 

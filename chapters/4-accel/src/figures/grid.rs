@@ -3,7 +3,7 @@
 use glam::UVec3;
 use lancer_accel::GridBuilder;
 use lancer_core::image::ImageSize;
-use lancer_core::intersector::{Hit, LinearScan, Observable, TestCounts};
+use lancer_core::intersector::{Hit, Intersector, LinearScan, TestCounts};
 use lancer_core::scene::{Camera, Scene};
 use lancer_figure::{
     Axis, Chart, Effort, Finished, Montage, Plate, Row, Series, Table, Tile, category_color,
@@ -52,7 +52,7 @@ impl Questions {
         self.rays.iter().map(|rays| rays.queries.len()).sum()
     }
 
-    fn ask(&self, index: &dyn Observable) -> Work {
+    fn ask(&self, index: &dyn Intersector) -> Work {
         let (mut counts, mut wrong) = (TestCounts::default(), false);
         for (rays, expected) in self.rays.iter().zip(&self.hits) {
             let (hits, more) = rays.watch(index);

@@ -12,7 +12,7 @@ use glam::DVec2;
 use lancer_accel::Bvh;
 use lancer_core::geometry::{Bounds3, Interval, Ray};
 use lancer_core::image::ImageSize;
-use lancer_core::intersector::{Hit, Intersector, LinearScan, TestCounts};
+use lancer_core::intersector::{Hit, Intersector, LinearScan, Query, TestCounts};
 use lancer_core::scene::load::Loaded;
 use lancer_core::scene::{PrimitiveId, Scene};
 use lancer_core::world::World;
@@ -140,7 +140,7 @@ impl Walker<'_> {
         let begins = step(&format!("begins, {} bytes beside the scene", built.bytes));
         self.steps.push(begins.opens().clears());
         let mut recorder = Recorder::new(scene, &ray, Interval::POSITIVE);
-        let hit = built.index.watch(&ray, Interval::POSITIVE, false, &mut recorder);
+        let hit = built.index.watch(&Query::closest(ray, Interval::POSITIVE), &mut recorder);
         let Recorder { events, counts, .. } = recorder;
         for Event { kind, best } in &events {
             let step = self.event(kind, *best, &step);

@@ -6,8 +6,8 @@ pub(crate) use grow::MAX_DEPTH;
 pub use grow::split_at_median;
 
 use glam::Vec3A;
-use lancer_core::geometry::{ConvexVolume, Interval, Ray};
-use lancer_core::intersector::{BeamTraversal, Hit, Observer, Traversal};
+use lancer_core::geometry::ConvexVolume;
+use lancer_core::intersector::{BeamIndex, BeamTraversal, Hit, Observer, Query, Traversal};
 use lancer_core::scene::{PrimitiveId, Scene};
 use rayon::prelude::*;
 
@@ -82,14 +82,12 @@ impl Traversal for Bvh<'_> {
     /// Visits the primitives whose boxes the ray meets, the leaves of a node before its other
     /// children and the nearest of those next, until any hit will do.
     #[inline]
-    fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        observer: &mut O,
-    ) -> Option<Hit> {
-        self.0.walk(ray, range, any, observer)
+    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
+        self.0.walk(query, observer)
+    }
+
+    fn beams(&self) -> Option<&dyn BeamIndex> {
+        Some(self)
     }
 }
 
@@ -151,6 +149,7 @@ impl Item {
 mod tests {
     use glam::{DAffine3, DVec3};
     use lancer_core::generate::icosphere;
+    use lancer_core::geometry::{Interval, Ray};
     use lancer_core::intersector::TestCounts;
 
     use super::*;
@@ -239,7 +238,9 @@ mod tests {
                 let turn = f64::from(k) * 2.4;
                 let origin = 3.0 * DVec3::new(turn.cos(), turn.sin(), f64::from(k) / 1000.0);
                 let ray = Ray::new(origin, 0.3 * DVec3::new(turn.sin(), 0.0, turn.cos()) - origin);
-                assert!(index.walk(&ray, Interval::POSITIVE, false, &mut counts).is_some());
+                assert!(
+                    index.walk(&Query::closest(ray, Interval::POSITIVE), &mut counts).is_some()
+                );
             }
             (index.statistics().sah_cost, counts.boxes + counts.primitives)
         });

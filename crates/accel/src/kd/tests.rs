@@ -127,7 +127,7 @@ fn clipping_spares_tests() {
         tree.validate().unwrap();
         let mut counts = TestCounts::default();
         for ray in rays(1000) {
-            tree.walk(&ray, Interval::POSITIVE, false, &mut counts);
+            tree.walk(&Query::closest(ray, Interval::POSITIVE), &mut counts);
         }
         counts.primitives
     });

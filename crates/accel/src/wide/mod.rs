@@ -7,7 +7,9 @@ mod walk;
 
 use glam::DVec3;
 use lancer_core::geometry::{ConvexVolume, Interval, Ray};
-use lancer_core::intersector::{BeamTraversal, Hit, Intersector, Observable, Observer, Probe};
+use lancer_core::intersector::{
+    BeamIndex, BeamTraversal, Hit, Intersector, Observer, Probe, Query, Wanted,
+};
 use lancer_core::scene::{PrimitiveId, Scene};
 
 use crate::binary_tree::{BinaryTree, Seen};
@@ -400,22 +402,21 @@ impl Intersector for Wide<'_> {
     fn occluded(&self, ray: &Ray, range: Interval) -> bool {
         self.any(ray, range, &mut ()).is_some()
     }
-}
 
-impl Observable for Wide<'_> {
-    fn watch(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        mut observer: &mut dyn Observer,
-    ) -> Option<Hit> {
-        if !any {
-            return self.closest(ray, range, &mut observer);
+    fn watch(&self, query: &Query, mut observer: &mut dyn Observer) -> Option<Hit> {
+        let &Query { ref ray, range, wanted } = query;
+        match wanted {
+            Wanted::Closest => self.closest(ray, range, &mut observer),
+            Wanted::Any => {
+                let mut probe = Probe::new(self.scene, ray, range);
+                probe.test(self.any(ray, range, &mut observer)?);
+                probe.best()
+            }
         }
-        let mut probe = Probe::new(self.scene, ray, range);
-        probe.test(self.any(ray, range, &mut observer)?);
-        probe.best()
+    }
+
+    fn beams(&self) -> Option<&dyn BeamIndex> {
+        Some(self)
     }
 }
 
