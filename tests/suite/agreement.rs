@@ -18,7 +18,7 @@ fn indexes(scene: &Scene) -> Vec<(&'static str, Box<dyn Intersector + '_>)> {
     let listed = STRUCTURES.into_iter().filter(|structure| structure.name != "linear");
     let mut indexes: Vec<(_, Box<dyn Intersector>)> = Vec::new();
     for structure in listed {
-        indexes.push((structure.name, (structure.build)(scene).index));
+        indexes.push((structure.name, structure.build(scene).index));
     }
     indexes.push(("wide, scalar", Box::new(Wide::scalar(scene))));
     indexes.push(("bvh, median", Box::new(Bvh::with_split(scene, Split::Median))));

@@ -42,8 +42,8 @@ fn aimed(scene: &Scene, random: &mut Random) -> Ray {
 
 fn assert_both_agree(name: &str, scene: &Scene, rays: usize) {
     let (oracle, grid, octree) = (LinearScan::new(scene), Grid::build(scene), Octree::build(scene));
-    grid.validate().unwrap_or_else(|error| panic!("{name}: {error}"));
-    octree.validate().unwrap_or_else(|error| panic!("{name}: {error}"));
+    grid.validate(scene).unwrap_or_else(|error| panic!("{name}: {error}"));
+    octree.validate(scene).unwrap_or_else(|error| panic!("{name}: {error}"));
     let mut random = Random::new(37);
     for _ in 0..rays {
         let ray = aimed(scene, &mut random);
@@ -111,7 +111,7 @@ fn an_octree_keeps_its_depth() {
     let leaves = |max_depth| {
         let builder = OctreeBuilder { leaf_size: 0, max_depth, ..OctreeBuilder::default() };
         let octree = builder.build(&scene);
-        octree.validate().unwrap();
+        octree.validate(&scene).unwrap();
         octree.leaves().count()
     };
     assert_eq!([0, 1].map(leaves), [1, 8]);

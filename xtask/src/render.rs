@@ -152,7 +152,7 @@ pub fn run(args: &Args) -> Result<()> {
         .context("cannot start the threads")?;
     let rendering = pool.install(|| {
         let start = Instant::now();
-        let built = (structure.build)(&scene);
+        let built = structure.build(&scene);
         let mib = built.bytes as f64 / f64::from(1 << 20);
         say!("index   {:7.3} s   {}, {mib:.1} MiB", start.elapsed().as_secs_f64(), args.index);
         trace(method, &scene, &*built.index, args)

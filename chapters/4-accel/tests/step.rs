@@ -72,7 +72,7 @@ fn records_are_complete_and_in_the_right_place() {
         let rays = scene.camera.primary_rays(ImageSize::new(8, 8));
         let mut hits = 0;
         for structure in STRUCTURES {
-            let built = (structure.build)(&scene);
+            let built = structure.build(&scene);
             for k in 0..64 {
                 let ray = rays.through(f64::from(k % 8) + 0.5, f64::from(k / 8) + 0.5);
                 let mut recorder = Recorder::new(&scene, &ray, Interval::POSITIVE);

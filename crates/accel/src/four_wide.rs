@@ -2,7 +2,7 @@ use std::ops::Range;
 
 use lancer_core::geometry::ConvexVolume;
 use lancer_core::intersector::{Hit, Observer, Probe, Query, Wanted};
-use lancer_core::scene::{PrimitiveId, Scene};
+use lancer_core::scene::{PrimitiveId, Scene, Subset};
 use smallvec::SmallVec;
 
 use crate::binary_tree::{BinaryTree, Seen, TreeNode, TreeStatistics};
@@ -144,8 +144,8 @@ impl<'s> FourWide<'s> {
         });
     }
 
-    pub(crate) fn validate(&self) -> Result<(), String> {
-        let mut seen = Seen::new(self.scene);
+    pub(crate) fn validate(&self, primitives: Subset) -> Result<(), String> {
+        let mut seen = Seen::new(primitives);
         let mut reached = 0;
         let mut pending = if self.nodes.is_empty() { Vec::new() } else { vec![0] };
         while let Some(index) = pending.pop() {

@@ -4,7 +4,7 @@ use glam::DVec3;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::illumination::Reflectance;
 use lancer_core::intersector::{Hit, Intersector, Observer, Query, Traversal, Wanted};
-use lancer_core::scene::Scene;
+use lancer_core::scene::{Scene, Shape};
 use lancer_core::world::{PointSource, SurfacePoint};
 use lancer_exercise::Shown;
 use lancer_whitted::{Call, RayKind};
@@ -67,16 +67,14 @@ impl<'a> Stage<'a> {
     }
 
     fn hits<'s>(&'s self, ray: &'s Ray, range: Interval) -> impl Iterator<Item = Hit> + 's {
-        let triangles = self.scene.mesh.triangles.len();
         self.scene.primitives().filter_map(move |primitive| {
-            let index = primitive.0 as usize;
-            let (t, barycentric) = match index.checked_sub(triangles) {
-                None => {
+            let (t, barycentric) = match self.scene.shape(primitive) {
+                Shape::Triangle(index) => {
                     let corners = self.scene.mesh.corners(index);
                     let hit = (self.subject.ray_triangle)(corners, ray)?;
                     (!starts_on(corners, ray, hit.0)).then_some(hit)?
                 }
-                Some(index) => {
+                Shape::Sphere(index) => {
                     let sphere = &self.scene.spheres[index].shape;
                     ((self.subject.ray_sphere)(sphere, ray)?, DVec3::ZERO)
                 }

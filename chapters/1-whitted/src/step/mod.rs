@@ -11,8 +11,8 @@ use lancer_core::Rgb;
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::intersector::{Hit, Intersector};
 use lancer_core::sampling::PixelSampling;
-use lancer_core::scene::Scene;
 use lancer_core::scene::load::Loaded;
+use lancer_core::scene::{Scene, Shape};
 use lancer_core::world::{PointSource, SurfacePoint, World};
 use lancer_exercise::Shown;
 use lancer_figure::{Backdrop, Color, INK, Pen, Picture, Step, Stroke, Walk, number};
@@ -233,11 +233,12 @@ impl Walker<'_> {
         terms: &LocalTerms,
     ) -> Step {
         let ray = node.call.ray;
-        let index = hit.primitive.0 as usize;
         let mesh = &self.scene.mesh;
-        let shape = match index.checked_sub(mesh.triangles.len()) {
-            Some(sphere) => format!("sphere {sphere}"),
-            None => format!("triangle {index} of face {}", mesh.triangles[index].face.0),
+        let shape = match self.scene.shape(hit.primitive) {
+            Shape::Sphere(index) => format!("sphere {index}"),
+            Shape::Triangle(index) => {
+                format!("triangle {index} of face {}", mesh.triangles[index].face.0)
+            }
         };
         let n = surface.shading_normal_towards(-ray.direction);
         let outside = surface.geometric_normal.dot(ray.direction) < 0.0;

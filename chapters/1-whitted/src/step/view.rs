@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 use lancer_core::geometry::Sphere;
-use lancer_core::scene::{Scene, SphereObject};
+use lancer_core::scene::{Scene, Shape, SphereObject};
 use lancer_figure::{
     Backdrop, Color, FAINT, INK, LABEL, MUTED, Pen, Point, Rect, Stroke, Style, TICK, Text, Tree,
     category_color,
@@ -92,11 +92,10 @@ impl View {
             if let RayEnd::Surface { hit, position, .. } = node.end {
                 paths.push((node.call.ray.origin, position));
                 ends.push((position, 0.0));
-                let sphere = (hit.primitive.0 as usize).checked_sub(scene.mesh.triangles.len());
-                ends.extend(sphere.map(|index| {
+                if let Shape::Sphere(index) = scene.shape(hit.primitive) {
                     let Sphere { center, radius } = scene.spheres[index].shape;
-                    (center, radius)
-                }));
+                    ends.push((center, radius));
+                }
             }
         }
         // A pixel that meets nothing is seen before the eye, as far as the middle of the picture.

@@ -42,7 +42,7 @@ impl Work {
 
 impl Questions {
     fn new(scene: &Scene, size: ImageSize) -> Self {
-        let rays = Rays::of(scene, size, &*(structure("bvh").build)(scene).index);
+        let rays = Rays::of(scene, size, &*structure("bvh").build(scene).index);
         let oracle = LinearScan::new(scene);
         let hits = rays.iter().map(|rays| rays.watch(&oracle).0).collect();
         Self { rays, hits }
@@ -117,7 +117,7 @@ pub fn make(effort: Effort) -> Finished {
     let others: Vec<(&str, f64, Work)> = OTHERS
         .into_iter()
         .map(|name| {
-            let built = (structure(name).build)(&stadium);
+            let built = structure(name).build(&stadium);
             let bytes = built.bytes as f64 / stadium.primitives().len() as f64;
             (name, bytes, in_stadium.ask(&*built.index))
         })

@@ -94,7 +94,7 @@ pub fn make(effort: Effort) -> Finished {
         .iter()
         .filter(|structure| structure.name != "linear")
         .map(|structure| {
-            let built = (structure.build)(&scene);
+            let built = structure.build(&scene);
             Map::of(structure.name, &watch(&scene, size, &*built.index), &expected)
         })
         .collect();

@@ -8,7 +8,7 @@ pub use grow::split_at_median;
 use glam::Vec3A;
 use lancer_core::geometry::ConvexVolume;
 use lancer_core::intersector::{BeamIndex, BeamTraversal, Hit, Observer, Query, Traversal};
-use lancer_core::scene::{PrimitiveId, Scene};
+use lancer_core::scene::{PrimitiveId, Subset};
 use rayon::prelude::*;
 
 use crate::binary_tree::{BinaryTree, TreeStatistics};
@@ -50,14 +50,14 @@ pub enum Split {
 pub struct Bvh<'s>(FourWide<'s>);
 
 impl<'s> Bvh<'s> {
-    /// Builds the tree over all primitives of the scene by the surface area heuristic.
-    pub fn build(scene: &'s Scene) -> Self {
-        Self::with_split(scene, Split::default())
+    /// Builds the tree by the surface area heuristic.
+    pub fn build(primitives: impl Into<Subset<'s>>) -> Self {
+        Self::with_split(primitives, Split::default())
     }
 
     /// Builds the tree by a split rule of choice.
-    pub fn with_split(scene: &'s Scene, split: Split) -> Self {
-        Self(FourWide::of(BinaryTree::build(scene, split)))
+    pub fn with_split(primitives: impl Into<Subset<'s>>, split: Split) -> Self {
+        Self(FourWide::of(BinaryTree::build(primitives, split)))
     }
 
     /// Bytes held by the index, without the scene it borrows.
@@ -70,11 +70,11 @@ impl<'s> Bvh<'s> {
         self.0.statistics()
     }
 
-    /// Checks that every box contains what is below it, that every primitive is in one leaf, and that
-    /// the tree is not too deep.
-    pub fn validate(&self) -> Result<(), String> {
+    /// Checks that every box contains what is below it, that every one of these primitives is in one
+    /// leaf, and that the tree is not too deep.
+    pub fn validate<'p>(&self, primitives: impl Into<Subset<'p>>) -> Result<(), String> {
         grow::check_depth(self.statistics())?;
-        self.0.validate()
+        self.0.validate(primitives.into())
     }
 }
 
@@ -106,24 +106,24 @@ impl BeamTraversal for Bvh<'_> {
 }
 
 impl<'s> BinaryTree<'s> {
-    /// Builds the tree over all primitives of the scene. It is the same for any number of threads.
-    pub fn build(scene: &'s Scene, split: Split) -> Self {
-        Self::grown(scene, Rule { split, max_leaf: MAX_LEAF })
+    /// Builds the tree. It is the same for any number of threads.
+    pub fn build(primitives: impl Into<Subset<'s>>, split: Split) -> Self {
+        Self::grown(&primitives.into(), Rule { split, max_leaf: MAX_LEAF })
     }
 
     /// The tree by the surface area heuristic down to single primitives, to be collapsed.
-    pub(crate) fn of_single_primitives(scene: &'s Scene) -> Self {
-        Self::grown(scene, Rule { split: Split::Sah, max_leaf: 1 })
+    pub(crate) fn of_single_primitives(primitives: &Subset<'s>) -> Self {
+        Self::grown(primitives, Rule { split: Split::Sah, max_leaf: 1 })
     }
 
-    fn grown(scene: &'s Scene, rule: Rule) -> Self {
-        let frame = Frame::of(scene.bounds());
-        let item = |id| {
-            let primitive = PrimitiveId(id);
+    fn grown(primitives: &Subset<'s>, rule: Rule) -> Self {
+        let scene = primitives.scene();
+        let frame = Frame::of(primitives.bounds());
+        let item = |place| {
+            let primitive = primitives.get(place);
             Item { bounds: frame.outwards(scene.primitive_bounds(primitive)), primitive }
         };
-        let mut items: Vec<Item> =
-            (0..scene.primitives().len() as u32).into_par_iter().map(item).collect();
+        let mut items: Vec<Item> = (0..primitives.len()).into_par_iter().map(item).collect();
         let nodes = grow::tree(&mut items, rule);
         let primitives = items.iter().map(|item| item.primitive).collect();
         Self { scene, frame, nodes, primitives }
@@ -151,6 +151,7 @@ mod tests {
     use lancer_core::generate::icosphere;
     use lancer_core::geometry::{Interval, Ray};
     use lancer_core::intersector::TestCounts;
+    use lancer_core::scene::Scene;
 
     use super::*;
     use crate::hard_sets::{hard_sets, triangles};
@@ -161,9 +162,13 @@ mod tests {
     fn hard_sets_are_built() {
         for (name, scene) in &hard_sets(100_000) {
             for split in SPLITS {
-                let valid = BinaryTree::build(scene, split).validate();
+                let valid = BinaryTree::build(scene, split).validate(scene);
                 assert_eq!(valid, Ok(()), "{name}, {split:?}");
-                assert_eq!(Bvh::with_split(scene, split).validate(), Ok(()), "{name}, {split:?}");
+                assert_eq!(
+                    Bvh::with_split(scene, split).validate(scene),
+                    Ok(()),
+                    "{name}, {split:?}"
+                );
             }
         }
     }
@@ -174,7 +179,10 @@ mod tests {
         let broken = |harm: &dyn Fn(&mut BinaryTree)| {
             let mut tree = BinaryTree::build(&scene, Split::Sah);
             harm(&mut tree);
-            [tree.validate().unwrap_err(), FourWide::of(tree).validate().unwrap_err()]
+            [
+                tree.validate(&scene).unwrap_err(),
+                FourWide::of(tree).validate((&scene).into()).unwrap_err(),
+            ]
         };
         let pair = |tree: &BinaryTree| tree.nodes.iter().position(|node| node.count > 1).unwrap();
         let small = broken(&|tree| {
