@@ -7,7 +7,7 @@ use lancer_accel::structures::STRUCTURES;
 use lancer_accel::{BinaryTree, Bvh, ObvhsBvh2, Split, Wide};
 use lancer_core::generate::{cube, icosphere};
 use lancer_core::geometry::{Interval, Ray, Sphere};
-use lancer_core::intersector::{Intersector, LinearScan, TestCounts, Traversal};
+use lancer_core::intersector::{Intersector, LinearScan, Query, TestCounts, Traversal};
 use lancer_core::scene::{MaterialId, Mesh, Scene, SphereObject};
 
 use crate::meshes::{OFFSETS, moved};
@@ -18,7 +18,7 @@ fn indexes(scene: &Scene) -> Vec<(&'static str, Box<dyn Intersector + '_>)> {
     let listed = STRUCTURES.into_iter().filter(|structure| structure.name != "linear");
     let mut indexes: Vec<(_, Box<dyn Intersector>)> = Vec::new();
     for structure in listed {
-        indexes.push((structure.name, (structure.build)(scene).index));
+        indexes.push((structure.name, structure.build(scene).index));
     }
     indexes.push(("wide, scalar", Box::new(Wide::scalar(scene))));
     indexes.push(("bvh, median", Box::new(Bvh::with_split(scene, Split::Median))));
@@ -289,8 +289,8 @@ fn the_tree_tests_few_primitives() {
     for _ in 0..500 {
         let ray = aimed("at an edge", &scene.mesh, DVec3::ZERO, &mut || random.unit());
         let before = few;
-        let wanted = oracle.walk(&ray, Interval::POSITIVE, false, &mut all);
-        assert_eq!(index.walk(&ray, Interval::POSITIVE, false, &mut few), wanted);
+        let wanted = oracle.walk(&Query::closest(ray, Interval::POSITIVE), &mut all);
+        assert_eq!(index.walk(&Query::closest(ray, Interval::POSITIVE), &mut few), wanted);
         assert!(few.primitives > before.primitives && few.boxes > before.boxes, "a hit was tested");
     }
     assert_eq!((all.primitives, all.boxes), (500 * 5120, 0));

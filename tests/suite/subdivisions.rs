@@ -5,7 +5,7 @@ use glam::DVec3;
 use lancer_accel::{Grid, GridBuilder, Octree, OctreeBuilder};
 use lancer_core::generate::{cube, icosphere};
 use lancer_core::geometry::{Bounds3, Interval, Ray};
-use lancer_core::intersector::{Intersector, LinearScan, TestCounts, Traversal};
+use lancer_core::intersector::{Intersector, LinearScan, Query, TestCounts, Traversal};
 use lancer_core::scene::{MaterialId, Mesh, Scene};
 
 use crate::random::Random;
@@ -42,8 +42,8 @@ fn aimed(scene: &Scene, random: &mut Random) -> Ray {
 
 fn assert_both_agree(name: &str, scene: &Scene, rays: usize) {
     let (oracle, grid, octree) = (LinearScan::new(scene), Grid::build(scene), Octree::build(scene));
-    grid.validate().unwrap_or_else(|error| panic!("{name}: {error}"));
-    octree.validate().unwrap_or_else(|error| panic!("{name}: {error}"));
+    grid.validate(scene).unwrap_or_else(|error| panic!("{name}: {error}"));
+    octree.validate(scene).unwrap_or_else(|error| panic!("{name}: {error}"));
     let mut random = Random::new(37);
     for _ in 0..rays {
         let ray = aimed(scene, &mut random);
@@ -111,7 +111,7 @@ fn an_octree_keeps_its_depth() {
     let leaves = |max_depth| {
         let builder = OctreeBuilder { leaf_size: 0, max_depth, ..OctreeBuilder::default() };
         let octree = builder.build(&scene);
-        octree.validate().unwrap();
+        octree.validate(&scene).unwrap();
         octree.leaves().count()
     };
     assert_eq!([0, 1].map(leaves), [1, 8]);
@@ -168,10 +168,10 @@ fn mailboxes_change_no_bit() {
         let ray = aimed(&scene, &mut random);
         let [a, b, c, d] = &mut counts;
         let hits = [
-            grids[0].walk(&ray, Interval::POSITIVE, false, a),
-            grids[1].walk(&ray, Interval::POSITIVE, false, b),
-            octrees[0].walk(&ray, Interval::POSITIVE, false, c),
-            octrees[1].walk(&ray, Interval::POSITIVE, false, d),
+            grids[0].walk(&Query::closest(ray, Interval::POSITIVE), a),
+            grids[1].walk(&Query::closest(ray, Interval::POSITIVE), b),
+            octrees[0].walk(&Query::closest(ray, Interval::POSITIVE), c),
+            octrees[1].walk(&Query::closest(ray, Interval::POSITIVE), d),
         ];
         assert!(hits.iter().all(|hit| *hit == hits[0]), "{hits:?}");
     }
@@ -205,8 +205,8 @@ fn a_grid_loses_the_teapot_in_the_stadium() {
     for _ in 0..100 {
         let origin = 3.0 * random.direction();
         let ray = Ray::new(origin, random.in_cube(0.5) - origin);
-        let hit = grid.walk(&ray, Interval::POSITIVE, false, &mut in_grid);
-        assert_eq!(octree.walk(&ray, Interval::POSITIVE, false, &mut in_octree), hit);
+        let hit = grid.walk(&Query::closest(ray, Interval::POSITIVE), &mut in_grid);
+        assert_eq!(octree.walk(&Query::closest(ray, Interval::POSITIVE), &mut in_octree), hit);
     }
     assert!(in_grid.primitives > 100 * 1_000, "{in_grid:?}");
     assert!(in_octree.primitives < 100 * 100, "{in_octree:?}");

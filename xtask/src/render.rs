@@ -266,9 +266,9 @@ fn trace(
     args: &Args,
 ) -> Result<Outcome> {
     let building = Cell::new(0.0);
-    let index: &BuildIndex = &|scene| {
+    let index: &BuildIndex = &|primitives| {
         let start = Instant::now();
-        let built = (structure.build)(scene);
+        let built = structure.build(primitives);
         let seconds = start.elapsed().as_secs_f64();
         let mib = built.bytes as f64 / f64::from(1 << 20);
         say!("index   {seconds:7.3} s   {}, {mib:.1} MiB", structure.name);

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use chapter_4::rays::Rays;
 use chapter_4::scenes::FAMILIES;
 use criterion::{Criterion, Throughput};
-use lancer_accel::structures::{STRUCTURES, Structure};
+use lancer_accel::structures::STRUCTURES;
 use lancer_core::image::ImageSize;
 use lancer_core::scene::{Scene, load};
 
@@ -49,13 +49,15 @@ fn measure(criterion: &mut Criterion, name: &str, scene: &Scene) {
     let triangles = scene.mesh.triangles.len() as u64;
     let mut group = criterion.benchmark_group(format!("{name}/build"));
     group.throughput(Throughput::Elements(triangles)).sample_size(10);
-    for Structure { name, build, .. } in indexes() {
-        group.bench_function(*name, |bencher| bencher.iter(|| black_box(build(scene).bytes)));
+    for structure in indexes() {
+        group.bench_function(structure.name, |bencher| {
+            bencher.iter(|| black_box(structure.build(scene).bytes));
+        });
     }
     group.finish();
 
     let built: Vec<_> =
-        indexes().map(|structure| (structure.name, (structure.build)(scene))).collect();
+        indexes().map(|structure| (structure.name, structure.build(scene))).collect();
     for rays in Rays::of(scene, SIZE, &*built[0].1.index) {
         let wanted = rays.trace(&*built[0].1.index);
         let mut group = criterion.benchmark_group(format!("{name}/{}", rays.kind.name()));

@@ -2,19 +2,10 @@
 
 use lancer_core::geometry::{Interval, Ray, leave_surface};
 use lancer_core::image::ImageSize;
-use lancer_core::intersector::{Hit, Intersector, Observable, TestCounts};
+use lancer_core::intersector::{Hit, Intersector, Query, TestCounts, Wanted};
 use lancer_core::render::neighbours_together;
 use lancer_core::sampling::Uniform;
 use lancer_core::scene::{PointLight, Scene};
-
-/// What an index is asked.
-#[derive(Clone, Copy, Debug)]
-pub struct Query {
-    /// The ray.
-    pub ray: Ray,
-    /// Where it looks.
-    pub range: Interval,
-}
 
 /// Where rays come from, which says how alike neighbours are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,9 +31,12 @@ impl Kind {
         }
     }
 
-    /// Whether any hit answers the question.
-    pub fn any(self) -> bool {
-        self == Self::Shadow
+    /// Which hit answers the question.
+    pub fn wanted(self) -> Wanted {
+        match self {
+            Self::Primary | Self::Diffuse => Wanted::Closest,
+            Self::Shadow => Wanted::Any,
+        }
     }
 }
 
@@ -63,7 +57,7 @@ impl Rays {
             Kind::ALL.map(|kind| Self { kind, queries: Vec::new() });
         for (x, y) in neighbours_together(size) {
             let ray = camera.through(f64::from(x) + 0.5, f64::from(y) + 0.5);
-            primary.queries.push(Query { ray, range: Interval::POSITIVE });
+            primary.queries.push(Query::closest(ray, Interval::POSITIVE));
             let Some(hit) = index.closest_hit(&ray, Interval::POSITIVE) else { continue };
             let point = scene.surface_at(&ray, &hit);
             let facing = -point.geometric_normal.dot(ray.direction).signum();
@@ -72,37 +66,36 @@ impl Rays {
             let origin = leave(light - point.position);
             if normal.dot(light - origin) > 0.0 {
                 let ray = Ray::new(origin, light - origin);
-                shadow.queries.push(Query { ray, range: Interval::up_to(1.0) });
+                shadow.queries.push(Query::any(ray, Interval::up_to(1.0)));
             }
             let direction = normal + Uniform::new(1, x, y).direction();
             let ray = Ray::new(leave(direction), direction);
-            diffuse.queries.push(Query { ray, range: Interval::POSITIVE });
+            diffuse.queries.push(Query::closest(ray, Interval::POSITIVE));
         }
         [primary, shadow, diffuse]
     }
 
     /// Asks an index everything, and returns how many rays hit.
     pub fn trace(&self, index: &dyn Intersector) -> usize {
-        let hits = |query: &&Query| match self.kind.any() {
-            true => index.occluded(&query.ray, query.range),
-            false => index.closest_hit(&query.ray, query.range).is_some(),
+        let hits = |query: &&Query| match query.wanted {
+            Wanted::Closest => index.closest_hit(&query.ray, query.range).is_some(),
+            Wanted::Any => index.occluded(&query.ray, query.range),
         };
         self.queries.iter().filter(hits).count()
     }
 
     /// The answers of an index, and its work.
-    pub fn watch(&self, index: &dyn Observable) -> (Vec<Option<Hit>>, TestCounts) {
+    pub fn watch(&self, index: &dyn Intersector) -> (Vec<Option<Hit>>, TestCounts) {
         let mut counts = TestCounts::default();
-        let answer =
-            |Query { ray, range }: &Query| index.watch(ray, *range, self.kind.any(), &mut counts);
+        let answer = |query: &Query| index.watch(query, &mut counts);
         (self.queries.iter().map(answer).collect(), counts)
     }
 
     /// Whether two indexes have answered alike: the same hits or, where any will do, a hit to the same rays.
     pub fn agree(&self, a: &[Option<Hit>], b: &[Option<Hit>]) -> bool {
-        match self.kind.any() {
-            true => a.iter().map(Option::is_some).eq(b.iter().map(Option::is_some)),
-            false => a == b,
+        match self.kind.wanted() {
+            Wanted::Closest => a == b,
+            Wanted::Any => a.iter().map(Option::is_some).eq(b.iter().map(Option::is_some)),
         }
     }
 }

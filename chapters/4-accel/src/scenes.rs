@@ -285,7 +285,7 @@ mod tests {
         for structure in STRUCTURES.into_iter().filter(|structure| structure.name != "linear") {
             let parts = scenes.iter().map(|scene| {
                 let expected = structure.expected_bytes(scene.primitives().len());
-                (structure.build)(scene).bytes as f64 / expected as f64
+                structure.build(scene).bytes as f64 / expected as f64
             });
             let most = parts.fold(0.0, f64::max);
             assert!((0.75..1.25).contains(&most), "{}: {most}", structure.name);

@@ -8,7 +8,7 @@ use insta::assert_snapshot;
 use lancer_accel::structures::STRUCTURES;
 use lancer_core::geometry::{Bounds3, Interval};
 use lancer_core::image::ImageSize;
-use lancer_core::intersector::{Intersector, LinearScan, TestCounts};
+use lancer_core::intersector::{Intersector, LinearScan, Query, TestCounts};
 use lancer_core::scene::load::Loaded;
 use lancer_core::scene::{Mesh, Scene};
 use lancer_figure::Walk;
@@ -78,17 +78,18 @@ fn records_are_complete_and_in_the_right_place() {
         let rays = scene.camera.primary_rays(ImageSize::new(8, 8));
         let mut hits = 0;
         for structure in STRUCTURES {
-            let built = (structure.build)(&scene);
+            let built = structure.build(&scene);
             for k in 0..64 {
                 let ray = rays.through(f64::from(k % 8) + 0.5, f64::from(k / 8) + 0.5);
                 let mut recorder = Recorder::new(&scene, &ray, Interval::POSITIVE);
-                let answer = built.index.watch(&ray, Interval::POSITIVE, false, &mut recorder);
+                let answer =
+                    built.index.watch(&Query::closest(ray, Interval::POSITIVE), &mut recorder);
                 let Recorder { events, counts, .. } = recorder;
                 assert_eq!(answer, oracle.closest_hit(&ray, Interval::POSITIVE));
                 assert_eq!(events.last().and_then(|event| event.best), answer);
                 assert_eq!(counted(&events), counts);
                 let mut watched = TestCounts::default();
-                built.index.watch(&ray, Interval::POSITIVE, false, &mut watched);
+                built.index.watch(&Query::closest(ray, Interval::POSITIVE), &mut watched);
                 assert_eq!(counts, watched);
 
                 let on_the_way = |event: &Event| match event.kind {

@@ -1,8 +1,7 @@
 use std::ops::Range;
 
-use lancer_core::geometry::{Interval, Ray};
-use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
-use lancer_core::scene::{PrimitiveId, Scene};
+use lancer_core::intersector::{Hit, Observer, Probe, Query, Traversal, Wanted};
+use lancer_core::scene::{PrimitiveId, Scene, Subset};
 
 use crate::four_boxes::{FourSlabs, Frame, FrameBox};
 
@@ -100,10 +99,10 @@ impl BinaryTree<'_> {
         size_of_val(self.nodes.as_slice()) + size_of_val(self.primitives.as_slice())
     }
 
-    /// Checks that every box contains what is below it, and that every node and every primitive is
-    /// below the root once.
-    pub fn validate(&self) -> Result<(), String> {
-        let mut seen = Seen::new(self.scene);
+    /// Checks that every box contains what is below it, and that every node and every one of these
+    /// primitives is below the root once.
+    pub fn validate<'p>(&self, primitives: impl Into<Subset<'p>>) -> Result<(), String> {
+        let mut seen = Seen::new(primitives.into());
         let mut reached = 0;
         let mut pending: Vec<usize> = if self.nodes.is_empty() { Vec::new() } else { vec![0] };
         while let Some(index) = pending.pop() {
@@ -137,8 +136,7 @@ struct Descent<'a, O> {
     /// Where the closest hit so far is, in the units of the boxes.
     max: f32,
     probe: Probe<'a>,
-    /// Whether the first hit ends the walk.
-    any: bool,
+    wanted: Wanted,
     observer: &'a mut O,
 }
 
@@ -156,7 +154,7 @@ impl<O: Observer> Descent<'_, O> {
         if node.is_leaf() {
             for &primitive in &tree.primitives[node.leaf()] {
                 self.observer.primitive_test(primitive);
-                if self.probe.test(primitive) && self.any {
+                if self.probe.test(primitive) && self.wanted == Wanted::Any {
                     return true;
                 }
             }
@@ -177,21 +175,15 @@ impl<O: Observer> Descent<'_, O> {
 
 impl Traversal for BinaryTree<'_> {
     /// Visits the primitives whose boxes the ray meets, the nearer child first, until any hit will do.
-    fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        observer: &mut O,
-    ) -> Option<Hit> {
+    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
         let root = self.nodes.first()?;
-        let slabs = FourSlabs::new(ray, &self.frame);
+        let slabs = FourSlabs::new(&query.ray, &self.frame);
         let mut descent = Descent {
             tree: self,
             slabs,
-            max: slabs.parameter(range.max),
-            probe: Probe::new(self.scene, ray, range),
-            any,
+            max: slabs.parameter(query.range.max),
+            probe: Probe::new(self.scene, &query.ray, query.range),
+            wanted: query.wanted,
             observer,
         };
         if descent.enter(root).is_some() {
@@ -203,13 +195,14 @@ impl Traversal for BinaryTree<'_> {
 
 /// Which primitives a validation has found in the leaves.
 pub(crate) struct Seen<'s> {
-    scene: &'s Scene,
+    all: Subset<'s>,
+    /// In their order.
     seen: Vec<bool>,
 }
 
 impl<'s> Seen<'s> {
-    pub(crate) fn new(scene: &'s Scene) -> Self {
-        Self { scene, seen: vec![false; scene.primitives().len()] }
+    pub(crate) fn new(all: Subset<'s>) -> Self {
+        Self { seen: vec![false; all.len()], all }
     }
 
     /// A leaf must contain its primitives, and no other leaf may have them.
@@ -220,12 +213,12 @@ impl<'s> Seen<'s> {
         primitives: &[PrimitiveId],
     ) -> Result<(), String> {
         for &primitive in primitives {
-            let seen = self.seen.get_mut(primitive.0 as usize);
-            let seen = seen.ok_or_else(|| format!("there is no {primitive:?}"))?;
-            if std::mem::replace(seen, true) {
+            let place = self.all.place(primitive);
+            let place = place.ok_or_else(|| format!("{primitive:?} is none of them"))?;
+            if std::mem::replace(&mut self.seen[place], true) {
                 return Err(format!("{primitive:?} is in two leaves"));
             }
-            if !bounds.contains(frame.outwards(self.scene.primitive_bounds(primitive))) {
+            if !bounds.contains(frame.outwards(self.all.scene().primitive_bounds(primitive))) {
                 return Err(format!("{primitive:?} sticks out of its leaf"));
             }
         }
@@ -235,7 +228,7 @@ impl<'s> Seen<'s> {
     /// No primitive may be missing.
     pub(crate) fn all(self) -> Result<(), String> {
         match self.seen.iter().position(|seen| !seen) {
-            Some(missing) => Err(format!("{:?} is in no leaf", PrimitiveId(missing as u32))),
+            Some(missing) => Err(format!("{:?} is in no leaf", self.all.get(missing))),
             None => Ok(()),
         }
     }

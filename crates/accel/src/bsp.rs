@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
-use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
-use lancer_core::scene::{PrimitiveId, Scene};
+use lancer_core::intersector::{Hit, Observer, Probe, Query, Traversal, Wanted};
+use lancer_core::scene::{PrimitiveId, Scene, Shape, Subset};
 use smallvec::SmallVec;
 
 use crate::spatial::{
@@ -115,10 +115,11 @@ const CUT: usize = 2;
 /// A primitive in a cell that is being divided.
 struct Piece {
     primitive: PrimitiveId,
-    shape: Shape,
+    part: Part,
 }
 
-enum Shape {
+/// What of a primitive is in a cell.
+enum Part {
     /// The part of a triangle inside the cell.
     Polygon(Polygon),
     Sphere {
@@ -127,7 +128,7 @@ enum Shape {
     },
 }
 
-impl Shape {
+impl Part {
     /// The smallest and the largest distance from a plane.
     fn reach(&self, plane: &Plane) -> [f64; 2] {
         match self {
@@ -159,22 +160,25 @@ enum Subtree {
 }
 
 impl BspBuilder {
-    /// Builds the tree over all primitives of the scene.
-    pub fn build(self, scene: &Scene) -> BspTree<'_> {
-        let bounds = scene.bounds();
+    /// Builds the tree.
+    pub fn build<'s>(self, primitives: impl Into<Subset<'s>>) -> BspTree<'s> {
+        let all = primitives.into();
+        let (scene, bounds) = (all.scene(), all.bounds());
         let center = bounds.center();
-        let pieces: Vec<Piece> = scene
-            .primitives()
+        let pieces: Vec<Piece> = all
+            .iter()
             .map(|primitive| {
-                let index = primitive.0 as usize;
-                let shape = if index < scene.mesh.triangles.len() {
-                    let corners = scene.mesh.corners(index).map(|corner| corner - center);
-                    Shape::Polygon(Polygon::from_slice(&corners))
-                } else {
-                    let sphere = scene.spheres[index - scene.mesh.triangles.len()].shape;
-                    Shape::Sphere { center: sphere.center - center, radius: sphere.radius }
+                let part = match scene.shape(primitive) {
+                    Shape::Triangle(index) => {
+                        let corners = scene.mesh.corners(index).map(|corner| corner - center);
+                        Part::Polygon(Polygon::from_slice(&corners))
+                    }
+                    Shape::Sphere(index) => {
+                        let sphere = scene.spheres[index].shape;
+                        Part::Sphere { center: sphere.center - center, radius: sphere.radius }
+                    }
                 };
-                Piece { primitive, shape }
+                Piece { primitive, part }
             })
             .collect();
         // Each of up to 50 cuts moves a new corner by a few ε.
@@ -202,7 +206,7 @@ impl BspBuilder {
         }
         let Some(plane) = self.best_plane(&pieces, tolerance) else { return leaf(&pieces) };
         let sides: Vec<Side> =
-            pieces.iter().map(|piece| side(&piece.shape, &plane, tolerance)).collect();
+            pieces.iter().map(|piece| side(&piece.part, &plane, tolerance)).collect();
         let count = |wanted: Side| sides.iter().filter(|&&side| side == wanted).count();
         let cut = count(Side::Both);
         let fuller = cut + count(Side::Behind).max(count(Side::Front));
@@ -237,7 +241,7 @@ impl BspBuilder {
         let score = |plane: &Plane| {
             let (mut behind, mut front, mut cut) = (0_usize, 0_usize, 0);
             for piece in spread(pieces, JUDGES) {
-                match side(&piece.shape, plane, tolerance) {
+                match side(&piece.part, plane, tolerance) {
                     Side::Behind => behind += 1,
                     Side::Within => {}
                     Side::Front => front += 1,
@@ -246,12 +250,12 @@ impl BspBuilder {
             }
             behind.max(front) + CUT * cut
         };
-        spread(pieces, ASKED).flat_map(|piece| self.planes_of(&piece.shape)).min_by_key(score)
+        spread(pieces, ASKED).flat_map(|piece| self.planes_of(&piece.part)).min_by_key(score)
     }
 
-    fn planes_of(&self, shape: &Shape) -> SmallVec<[Plane; 4]> {
-        match *shape {
-            Shape::Polygon(ref corners) => {
+    fn planes_of(&self, part: &Part) -> SmallVec<[Plane; 4]> {
+        match *part {
+            Part::Polygon(ref corners) => {
                 let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
                 let mut planes: SmallVec<[Plane; 4]> =
                     Plane::new(normal, corners[0]).into_iter().collect();
@@ -267,7 +271,7 @@ impl BspBuilder {
                 }
                 planes
             }
-            Shape::Sphere { center, .. } => {
+            Part::Sphere { center, .. } => {
                 DVec3::AXES.into_iter().filter_map(|axis| Plane::new(axis, center)).collect()
             }
         }
@@ -285,8 +289,8 @@ fn spread(pieces: &[Piece], count: usize) -> impl Iterator<Item = &Piece> {
     })
 }
 
-fn side(shape: &Shape, plane: &Plane, tolerance: f64) -> Side {
-    let [min, max] = shape.reach(plane);
+fn side(part: &Part, plane: &Plane, tolerance: f64) -> Side {
+    let [min, max] = part.reach(plane);
     match (min < -tolerance, max > tolerance) {
         (true, true) => Side::Both,
         (true, false) => Side::Behind,
@@ -297,15 +301,15 @@ fn side(shape: &Shape, plane: &Plane, tolerance: f64) -> Side {
 
 /// The halves behind and in front of a plane. Both have the same new corners, so that nothing of the
 /// piece is lost, wherever rounding puts the cut. A sphere stays whole.
-fn cut_in_two(Piece { primitive, shape }: Piece, plane: &Plane) -> [Piece; 2] {
-    let shapes = match shape {
-        Shape::Polygon(corners) => [
-            Shape::Polygon(clip(&corners, |p| plane.distance(p))),
-            Shape::Polygon(clip(&corners, |p| -plane.distance(p))),
+fn cut_in_two(Piece { primitive, part }: Piece, plane: &Plane) -> [Piece; 2] {
+    let parts = match part {
+        Part::Polygon(corners) => [
+            Part::Polygon(clip(&corners, |p| plane.distance(p))),
+            Part::Polygon(clip(&corners, |p| -plane.distance(p))),
         ],
-        Shape::Sphere { center, radius } => [(); 2].map(|()| Shape::Sphere { center, radius }),
+        Part::Sphere { center, radius } => [(); 2].map(|()| Part::Sphere { center, radius }),
     };
-    shapes.map(|shape| Piece { primitive, shape })
+    parts.map(|part| Piece { primitive, part })
 }
 
 /// The far side of a plane, still to be visited after what lies in the plane.
@@ -320,9 +324,9 @@ struct Pending {
 type Stack = SmallVec<[Pending; 64]>;
 
 impl<'s> BspTree<'s> {
-    /// Builds the tree over all primitives of the scene.
-    pub fn build(scene: &'s Scene) -> Self {
-        BspBuilder::default().build(scene)
+    /// Builds the tree with the default parameters.
+    pub fn build(primitives: impl Into<Subset<'s>>) -> Self {
+        BspBuilder::default().build(primitives)
     }
 
     /// Appends a subtree to the nodes, what is behind a plane first. As deep as the tree, which has a
@@ -364,12 +368,11 @@ impl<'s> BspTree<'s> {
     #[inline(always)]
     fn walk_leaves<O: Observer>(
         &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
+        query: &Query,
         observer: &mut O,
         mut enter_leaf: impl FnMut(usize),
     ) -> Option<Hit> {
+        let &Query { ref ray, range, wanted } = query;
         let mut probe = Probe::new(self.scene, ray, range);
         // Rounding may move the ray, or the polygon that it meets, across a plane.
         let thickness = thickness(ray, self.bounds) + 2.0 * self.tolerance;
@@ -379,7 +382,7 @@ impl<'s> BspTree<'s> {
         let test_all = |probe: &mut Probe, observer: &mut O, node: &Node| {
             self.primitives_of(node).iter().any(|&primitive| {
                 observer.primitive_test(primitive);
-                probe.test(primitive) && any
+                probe.test(primitive) && wanted == Wanted::Any
             })
         };
         let mut stack = Stack::new();
@@ -463,20 +466,20 @@ impl<'s> BspTree<'s> {
     /// The numbers of the cells that the search for the closest hit visits, in this order.
     pub fn visited_leaves(&self, ray: &Ray, range: Interval) -> Vec<usize> {
         let mut visited = Vec::new();
-        self.walk_leaves(ray, range, false, &mut (), |node| visited.push(node));
+        self.walk_leaves(&Query::closest(*ray, range), &mut (), |node| visited.push(node));
         visited.into_iter().map(|node| self.number(node)).collect()
     }
 
-    /// Checks that the tree is one: every node reached once, no deeper than allowed, and every
-    /// primitive, at points all over it, in the cells or the planes that are there.
+    /// Checks that the tree is one: every node reached once, no deeper than allowed, and every one of
+    /// these primitives, at points all over it, in the cells or the planes that are there.
     ///
     /// # Errors
     /// What is wrong, and where.
-    pub fn validate(&self) -> Result<(), String> {
+    pub fn validate<'p>(&self, all: impl Into<Subset<'p>>) -> Result<(), String> {
         let center = self.bounds.center();
-        let points: Vec<(PrimitiveId, DVec3)> = self
-            .scene
-            .primitives()
+        let points: Vec<(PrimitiveId, DVec3)> = all
+            .into()
+            .iter()
             .flat_map(|primitive| {
                 surface_points(self.scene, primitive)
                     .into_iter()
@@ -534,14 +537,8 @@ impl<'s> BspTree<'s> {
 impl Traversal for BspTree<'_> {
     /// Visits the cells along the ray until one holds a hit, or any will do.
     #[inline]
-    fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        observer: &mut O,
-    ) -> Option<Hit> {
-        self.walk_leaves(ray, range, any, observer, |_| {})
+    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
+        self.walk_leaves(query, observer, |_| {})
     }
 }
 

@@ -1,7 +1,7 @@
 //! What the subdivisions of space share: the search through the cells that a ray visits.
 
 use lancer_core::geometry::Bounds3;
-use lancer_core::intersector::{Hit, Observer, Probe};
+use lancer_core::intersector::{Hit, Observer, Probe, Wanted};
 use lancer_core::scene::PrimitiveId;
 
 /// A cell of a spatial subdivision, visited by a ray.
@@ -31,7 +31,7 @@ pub(crate) fn search<'i, O: Observer>(
     mut cells: impl RayCells<'i>,
     mut probe: Probe,
     mailboxing: bool,
-    any: bool,
+    wanted: Wanted,
     observer: &mut O,
 ) -> Option<Hit> {
     let mut mailbox = Mailbox::new();
@@ -41,7 +41,7 @@ pub(crate) fn search<'i, O: Observer>(
                 continue;
             }
             observer.primitive_test(primitive);
-            if probe.test(primitive) && any {
+            if probe.test(primitive) && wanted == Wanted::Any {
                 return probe.best();
             }
         }

@@ -1,8 +1,8 @@
 use std::ops::Range;
 
-use lancer_core::geometry::{ConvexVolume, Interval, Ray};
-use lancer_core::intersector::{Hit, Observer, Probe};
-use lancer_core::scene::{PrimitiveId, Scene};
+use lancer_core::geometry::ConvexVolume;
+use lancer_core::intersector::{Hit, Observer, Probe, Query, Wanted};
+use lancer_core::scene::{PrimitiveId, Scene, Subset};
 use smallvec::SmallVec;
 
 use crate::binary_tree::{BinaryTree, Seen, TreeNode, TreeStatistics};
@@ -80,16 +80,10 @@ impl<'s> FourWide<'s> {
     }
 
     #[inline]
-    pub(crate) fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        observer: &mut O,
-    ) -> Option<Hit> {
-        let mut probe = Probe::new(self.scene, ray, range);
-        let slabs = FourSlabs::new(ray, &self.frame);
-        let mut max = slabs.parameter(range.max);
+    pub(crate) fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
+        let mut probe = Probe::new(self.scene, &query.ray, query.range);
+        let slabs = FourSlabs::new(&query.ray, &self.frame);
+        let mut max = slabs.parameter(query.range.max);
         let mut pending = Pending::default();
         let mut next = self.nodes.first();
         while let Some(node) = next {
@@ -105,7 +99,7 @@ impl<'s> FourWide<'s> {
                 }
                 for &primitive in &self.primitives[node.leaf(lane)] {
                     observer.primitive_test(primitive);
-                    if probe.test(primitive) && any {
+                    if probe.test(primitive) && query.wanted == Wanted::Any {
                         return probe.best();
                     }
                 }
@@ -150,8 +144,8 @@ impl<'s> FourWide<'s> {
         });
     }
 
-    pub(crate) fn validate(&self) -> Result<(), String> {
-        let mut seen = Seen::new(self.scene);
+    pub(crate) fn validate(&self, primitives: Subset) -> Result<(), String> {
+        let mut seen = Seen::new(primitives);
         let mut reached = 0;
         let mut pending = if self.nodes.is_empty() { Vec::new() } else { vec![0] };
         while let Some(index) = pending.pop() {

@@ -4,8 +4,8 @@ mod beam;
 
 use glam::{DVec3, IVec3, UVec3};
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
-use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
-use lancer_core::scene::{PrimitiveId, Scene};
+use lancer_core::intersector::{BeamIndex, Hit, Observer, Probe, Query, Traversal};
+use lancer_core::scene::{PrimitiveId, Scene, Subset};
 
 use crate::cells::{Cell, RayCells, search};
 use crate::touching::{Footprint, overlap, rounding, slack, surface_points};
@@ -69,18 +69,18 @@ const MAX_CELLS: f64 = (1_u32 << 28) as f64;
 const MAX_REFERENCES: f64 = 64.0;
 
 impl GridBuilder {
-    /// Builds the grid over all primitives of the scene.
-    pub fn build(self, scene: &Scene) -> Grid<'_> {
-        let slack = slack(scene.bounds());
-        let bounds = scene.bounds().grown(slack);
-        let boxes: Vec<Bounds3> = scene
-            .primitives()
-            .map(|primitive| scene.primitive_bounds(primitive).grown(slack))
-            .collect();
+    /// Builds the grid.
+    pub fn build<'s>(self, primitives: impl Into<Subset<'s>>) -> Grid<'s> {
+        let all = primitives.into();
+        let (scene, bounds) = (all.scene(), all.bounds());
+        let slack = slack(bounds);
+        let bounds = bounds.grown(slack);
+        let boxes: Vec<Bounds3> =
+            all.iter().map(|primitive| scene.primitive_bounds(primitive).grown(slack)).collect();
         let lattice = Lattice::suited(bounds, slack, &boxes, self.density);
-        let touched = |index: usize| {
-            let primitive = PrimitiveId(index as u32);
-            let range = lattice.range(boxes[index]);
+        let touched = |place: usize| {
+            let primitive = all.get(place);
+            let range = lattice.range(boxes[place]);
             // Most primitives are small: what has one cell only need not be looked at closely.
             let footprint = (range[0] != range[1]).then(|| Footprint::new(scene, primitive, slack));
             let touches = move |cell: &IVec3| {
@@ -90,8 +90,8 @@ impl GridBuilder {
         };
 
         let mut first = vec![0; lattice.cells() + 1];
-        for index in 0..boxes.len() {
-            touched(index).for_each(|cell| first[cell] += 1);
+        for place in 0..all.len() {
+            touched(place).for_each(|cell| first[cell] += 1);
         }
         let mut end = 0;
         for row in &mut first {
@@ -100,10 +100,10 @@ impl GridBuilder {
         }
         // Filled from the back, so that every row ends up in order, and begins where its first entry is.
         let mut primitives = vec![PrimitiveId(0); end as usize];
-        for index in (0..boxes.len()).rev() {
-            for cell in touched(index) {
+        for place in (0..all.len()).rev() {
+            for cell in touched(place) {
                 first[cell] -= 1;
-                primitives[first[cell] as usize] = PrimitiveId(index as u32);
+                primitives[first[cell] as usize] = all.get(place);
             }
         }
         Grid { scene, bounds, slack, lattice, first, primitives, mailboxing: self.mailboxing }
@@ -112,8 +112,8 @@ impl GridBuilder {
 
 impl<'s> Grid<'s> {
     /// Builds the grid with the default parameters.
-    pub fn build(scene: &'s Scene) -> Self {
-        GridBuilder::default().build(scene)
+    pub fn build(primitives: impl Into<Subset<'s>>) -> Self {
+        GridBuilder::default().build(primitives)
     }
 
     /// Bytes held by the index, without the scene it borrows.
@@ -175,9 +175,9 @@ impl<'s> Grid<'s> {
         Cell { bounds: self.lattice.bounds(cell), enter, primitives: &self.primitives[row] }
     }
 
-    /// Checks that the rows are in order, that every primitive lies in the cells of its corners, and that
-    /// no cell holds what does not come near it.
-    pub fn validate(&self) -> Result<(), String> {
+    /// Checks that the rows are in order, that every one of these primitives lies in the cells of its
+    /// corners, and that no cell holds what does not come near it.
+    pub fn validate<'p>(&self, all: impl Into<Subset<'p>>) -> Result<(), String> {
         let Self { scene, lattice, first, primitives, .. } = self;
         if first.len() != lattice.cells() + 1 || first[0] != 0 || !first.is_sorted() {
             return Err("the rows are out of order".into());
@@ -199,7 +199,7 @@ impl<'s> Grid<'s> {
                 return Err(format!("cell {at} holds a primitive that lies elsewhere"));
             }
         }
-        for primitive in scene.primitives() {
+        for primitive in all.into().iter() {
             for point in surface_points(scene, primitive) {
                 let at = lattice.cell_of(point);
                 if self.cell(at, 0.0).primitives.binary_search(&primitive).is_err() {
@@ -215,18 +215,17 @@ impl Traversal for Grid<'_> {
     /// Visits the primitives of cell after cell along the ray, until any hit will do or the closest is
     /// nearer than the next cell.
     #[inline]
-    fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        observer: &mut O,
-    ) -> Option<Hit> {
+    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
+        let &Query { ref ray, range, wanted } = query;
         let probe = Probe::new(self.scene, ray, range);
         match self.path(ray, range)? {
-            Path::Line(line) => search(line, probe, self.mailboxing, any, observer),
-            Path::Slices(slices) => search(slices, probe, self.mailboxing, any, observer),
+            Path::Line(line) => search(line, probe, self.mailboxing, wanted, observer),
+            Path::Slices(slices) => search(slices, probe, self.mailboxing, wanted, observer),
         }
+    }
+
+    fn beams(&self) -> Option<&dyn BeamIndex> {
+        Some(self)
     }
 }
 

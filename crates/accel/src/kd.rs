@@ -4,8 +4,8 @@ mod sides;
 
 use glam::DVec3;
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
-use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
-use lancer_core::scene::{PrimitiveId, Scene};
+use lancer_core::intersector::{Hit, Observer, Probe, Query, Traversal, Wanted};
+use lancer_core::scene::{PrimitiveId, Scene, Shape, Subset};
 use smallvec::SmallVec;
 
 pub use sides::Sides;
@@ -111,10 +111,12 @@ struct Candidate {
 }
 
 impl KdBuilder {
-    /// Builds the tree over all primitives of the scene.
-    pub fn build(self, scene: &Scene) -> KdTree<'_> {
-        let references: Vec<Reference> = scene
-            .primitives()
+    /// Builds the tree.
+    pub fn build<'s>(self, primitives: impl Into<Subset<'s>>) -> KdTree<'s> {
+        let all = primitives.into();
+        let scene = all.scene();
+        let references: Vec<Reference> = all
+            .iter()
             .map(|primitive| {
                 let bounds = scene.primitive_bounds(primitive);
                 Reference { primitive, bounds: bounds.grown(margin(bounds)) }
@@ -182,13 +184,10 @@ impl KdBuilder {
         let whole = scene.primitive_bounds(reference.primitive);
         let margin = margin(whole);
         let near = within.grown(margin);
-        let part = match scene.mesh.triangles.get(reference.primitive.0 as usize) {
-            Some(_) => {
-                let corners = scene.mesh.corners(reference.primitive.0 as usize);
-                Bounds3::of_points(clipped(corners, near))
-            }
+        let part = match scene.shape(reference.primitive) {
+            Shape::Triangle(index) => Bounds3::of_points(clipped(scene.mesh.corners(index), near)),
             // A sphere keeps its box unless the cell is in a corner of it.
-            None => {
+            Shape::Sphere(_) => {
                 let center = whole.center();
                 let nearest = center.clamp(near.min, near.max);
                 let radius = 0.5 * (whole.max - whole.min).max_element();
@@ -321,9 +320,9 @@ struct Pending {
 type Stack = SmallVec<[Pending; 64]>;
 
 impl<'s> KdTree<'s> {
-    /// Builds the tree over all primitives of the scene.
-    pub fn build(scene: &'s Scene) -> Self {
-        KdBuilder::default().build(scene)
+    /// Builds the tree with the default parameters.
+    pub fn build(primitives: impl Into<Subset<'s>>) -> Self {
+        KdBuilder::default().build(primitives)
     }
 
     /// Appends a subtree to the nodes, what is below a plane first. As deep as the tree, which has a
@@ -357,12 +356,11 @@ impl<'s> KdTree<'s> {
     #[inline(always)]
     fn walk_leaves<O: Observer>(
         &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
+        query: &Query,
         observer: &mut O,
         mut enter_leaf: impl FnMut(usize),
     ) -> Option<Hit> {
+        let &Query { ref ray, range, wanted } = query;
         let mut probe = Probe::new(self.scene, ray, range);
         let thickness = thickness(ray, self.bounds);
         let bounds = self.bounds.grown(thickness);
@@ -394,7 +392,7 @@ impl<'s> KdTree<'s> {
                     enter_leaf(index);
                     for &primitive in &self.primitives[first as usize..][..count as usize] {
                         observer.primitive_test(primitive);
-                        if probe.test(primitive) && any {
+                        if probe.test(primitive) && wanted == Wanted::Any {
                             return probe.best();
                         }
                     }
@@ -451,18 +449,18 @@ impl<'s> KdTree<'s> {
     /// [`KdTree::leaves`].
     pub fn visited_leaves(&self, ray: &Ray, range: Interval) -> Vec<usize> {
         let mut visited = Vec::new();
-        self.walk_leaves(ray, range, false, &mut (), |node| visited.push(node));
+        self.walk_leaves(&Query::closest(*ray, range), &mut (), |node| visited.push(node));
         let is_leaf = |node: &&Node| matches!(node, Node::Leaf { .. });
         visited.iter().map(|&node| self.nodes[..node].iter().filter(is_leaf).count()).collect()
     }
 
     /// Checks that the tree is one: every node reached once, no deeper than allowed, planes inside
-    /// their cells, and every primitive, once, in all cells that it comes into.
+    /// their cells, and every one of these primitives, once, in all cells that it comes into.
     ///
     /// # Errors
     /// What is wrong, and where.
-    pub fn validate(&self) -> Result<(), String> {
-        let all: Vec<PrimitiveId> = self.scene.primitives().collect();
+    pub fn validate<'p>(&self, all: impl Into<Subset<'p>>) -> Result<(), String> {
+        let all: Vec<PrimitiveId> = all.into().iter().collect();
         let (mut next_node, mut next_primitive) = (0, 0);
         let mut pending = vec![(0, self.bounds, 0, all)];
         while let Some((index, cell, depth, inside)) = pending.pop() {
@@ -509,13 +507,13 @@ impl<'s> KdTree<'s> {
 
     /// Whether a point of the primitive is in the cell.
     fn comes_near(&self, primitive: PrimitiveId, cell: Bounds3) -> bool {
-        let index = primitive.0 as usize;
-        if index < self.scene.mesh.triangles.len() {
-            !clipped(self.scene.mesh.corners(index), cell).is_empty()
-        } else {
-            let sphere = self.scene.spheres[index - self.scene.mesh.triangles.len()].shape;
-            let nearest = sphere.center.clamp(cell.min, cell.max);
-            sphere.center.distance(nearest) <= sphere.radius
+        match self.scene.shape(primitive) {
+            Shape::Triangle(index) => !clipped(self.scene.mesh.corners(index), cell).is_empty(),
+            Shape::Sphere(index) => {
+                let sphere = self.scene.spheres[index].shape;
+                let nearest = sphere.center.clamp(cell.min, cell.max);
+                sphere.center.distance(nearest) <= sphere.radius
+            }
         }
     }
 }
@@ -523,14 +521,8 @@ impl<'s> KdTree<'s> {
 impl Traversal for KdTree<'_> {
     /// Visits the cells along the ray until one holds a hit, or any will do.
     #[inline]
-    fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        observer: &mut O,
-    ) -> Option<Hit> {
-        self.walk_leaves(ray, range, any, observer, |_| {})
+    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
+        self.walk_leaves(query, observer, |_| {})
     }
 }
 

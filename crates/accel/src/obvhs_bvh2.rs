@@ -1,7 +1,6 @@
 use glam::Vec3A;
-use lancer_core::geometry::{Interval, Ray};
-use lancer_core::intersector::{Hit, Observer, Traversal};
-use lancer_core::scene::{PrimitiveId, Scene};
+use lancer_core::intersector::{Hit, Observer, Query, Traversal};
+use lancer_core::scene::{PrimitiveId, Subset};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
@@ -28,10 +27,11 @@ const BUILD: BvhBuildParams = BvhBuildParams {
 };
 
 impl<'s> ObvhsBvh2<'s> {
-    /// Builds the tree over all primitives of the scene.
-    pub fn build(scene: &'s Scene) -> Self {
-        let frame = Frame::of(scene.bounds());
-        let boxes = library_boxes(scene, &frame, 0.0);
+    /// Builds the tree.
+    pub fn build(primitives: impl Into<Subset<'s>>) -> Self {
+        let all = primitives.into();
+        let frame = Frame::of(all.bounds());
+        let boxes = library_boxes(&all, &frame, 0.0);
         let tree = if boxes.is_empty() {
             Bvh2::default()
         } else {
@@ -39,10 +39,10 @@ impl<'s> ObvhsBvh2<'s> {
         };
         drop(boxes);
         Self(FourWide::of(BinaryTree {
-            scene,
+            scene: all.scene(),
             frame,
             nodes: tree.nodes.iter().map(taken_over).collect(),
-            primitives: tree.primitive_indices.into_iter().map(PrimitiveId).collect(),
+            primitives: ids(&all, tree.primitive_indices),
         }))
     }
 
@@ -56,19 +56,25 @@ impl<'s> ObvhsBvh2<'s> {
         self.0.statistics()
     }
 
-    /// Checks that every box contains what is below it, and that every primitive is in one leaf.
-    pub fn validate(&self) -> Result<(), String> {
-        self.0.validate()
+    /// Checks that every box contains what is below it, and that every one of these primitives is in one
+    /// leaf.
+    pub fn validate<'p>(&self, primitives: impl Into<Subset<'p>>) -> Result<(), String> {
+        self.0.validate(primitives.into())
     }
 }
 
 /// The primitives' boxes as the library wants them, grown by a margin.
-pub(crate) fn library_boxes(scene: &Scene, frame: &Frame, margin: f32) -> Vec<Aabb> {
+pub(crate) fn library_boxes(all: &Subset, frame: &Frame, margin: f32) -> Vec<Aabb> {
     let library_box = |primitive| {
-        let bounds = frame.outwards(scene.primitive_bounds(primitive)).grown(margin);
+        let bounds = frame.outwards(all.scene().primitive_bounds(primitive)).grown(margin);
         Aabb::new(bounds.min, bounds.max)
     };
-    scene.primitives().map(library_box).collect()
+    all.iter().map(library_box).collect()
+}
+
+/// What the library numbers by the places of [`library_boxes`].
+pub(crate) fn ids(all: &Subset, places: Vec<u32>) -> Vec<PrimitiveId> {
+    places.into_iter().map(|place| all.get(place as usize)).collect()
 }
 
 fn taken_over(node: &Bvh2Node) -> TreeNode {
@@ -83,13 +89,7 @@ impl Traversal for ObvhsBvh2<'_> {
     /// Visits the primitives whose boxes the ray meets, the leaves of a node before its other
     /// children and the nearest of those next, until any hit will do.
     #[inline]
-    fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        observer: &mut O,
-    ) -> Option<Hit> {
-        self.0.walk(ray, range, any, observer)
+    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
+        self.0.walk(query, observer)
     }
 }

@@ -1,14 +1,13 @@
 use glam::Vec4;
-use lancer_core::geometry::{Interval, Ray};
-use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
-use lancer_core::scene::{PrimitiveId, Scene};
+use lancer_core::intersector::{Hit, Observer, Probe, Query, Traversal, Wanted};
+use lancer_core::scene::{PrimitiveId, Scene, Subset};
 use obvhs::BvhBuildParams;
 use obvhs::cwbvh::builder::build_cwbvh;
 use obvhs::cwbvh::node::CwBvhNode;
 
 use crate::binary_tree::Seen;
 use crate::four_boxes::{FourBoxes, FourSlabs, Frame, FrameBox};
-use crate::obvhs_bvh2::library_boxes;
+use crate::obvhs_bvh2::{ids, library_boxes};
 use crate::pending::{Entered, Lanes, Pending};
 
 /// The compressed wide hierarchy that the obvhs library builds: eight children per node, their boxes on
@@ -35,16 +34,16 @@ pub struct ObvhsCwbvh<'s> {
 const MARGIN: f32 = 8.0 * f32::EPSILON;
 
 impl<'s> ObvhsCwbvh<'s> {
-    /// Builds the tree over all primitives of the scene.
-    pub fn build(scene: &'s Scene) -> Self {
-        let frame = Frame::of(scene.bounds());
-        let boxes = library_boxes(scene, &frame, MARGIN);
+    /// Builds the tree.
+    pub fn build(primitives: impl Into<Subset<'s>>) -> Self {
+        let all = primitives.into();
+        let (scene, frame) = (all.scene(), Frame::of(all.bounds()));
+        let boxes = library_boxes(&all, &frame, MARGIN);
         if boxes.is_empty() {
             return Self { scene, frame, nodes: Vec::new(), primitives: Vec::new() };
         }
         let tree = build_cwbvh(&boxes, BvhBuildParams::medium_build(), &mut Default::default());
-        let primitives = tree.primitive_indices.into_iter().map(PrimitiveId).collect();
-        Self { scene, frame, nodes: tree.nodes, primitives }
+        Self { scene, frame, nodes: tree.nodes, primitives: ids(&all, tree.primitive_indices) }
     }
 
     /// Bytes held by the index, without the scene it borrows.
@@ -52,9 +51,10 @@ impl<'s> ObvhsCwbvh<'s> {
         size_of_val(self.nodes.as_slice()) + size_of_val(self.primitives.as_slice())
     }
 
-    /// Checks that every primitive is in one leaf and in all boxes above it, as they are unpacked.
-    pub fn validate(&self) -> Result<(), String> {
-        let mut seen = Seen::new(self.scene);
+    /// Checks that every one of these primitives is in one leaf and in all boxes above it, as they are
+    /// unpacked.
+    pub fn validate<'p>(&self, primitives: impl Into<Subset<'p>>) -> Result<(), String> {
+        let mut seen = Seen::new(primitives.into());
         let mut reached = 0;
         let root = (0, FrameBox::EVERYTHING);
         let mut pending = if self.nodes.is_empty() { Vec::new() } else { vec![root] };
@@ -114,16 +114,10 @@ impl Traversal for ObvhsCwbvh<'_> {
     /// Visits the primitives whose boxes the ray meets, the leaves of a node before its other
     /// children and the nearest of those next, until any hit will do.
     #[inline]
-    fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        observer: &mut O,
-    ) -> Option<Hit> {
-        let mut probe = Probe::new(self.scene, ray, range);
-        let slabs = FourSlabs::new(ray, &self.frame);
-        let mut max = slabs.parameter(range.max);
+    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
+        let mut probe = Probe::new(self.scene, &query.ray, query.range);
+        let slabs = FourSlabs::new(&query.ray, &self.frame);
+        let mut max = slabs.parameter(query.range.max);
         let mut pending = Pending::default();
         let mut next = self.nodes.first();
         while let Some(node) = next {
@@ -144,7 +138,7 @@ impl Traversal for ObvhsCwbvh<'_> {
                 }
                 for &primitive in self.leaf(node, slot) {
                     observer.primitive_test(primitive);
-                    if probe.test(primitive) && any {
+                    if probe.test(primitive) && query.wanted == Wanted::Any {
                         return probe.best();
                     }
                 }
@@ -167,7 +161,7 @@ mod tests {
     #[test]
     fn unpacked_boxes_contain_their_primitives() {
         for (name, scene) in hard_sets(1000) {
-            assert_eq!(ObvhsCwbvh::build(&scene).validate(), Ok(()), "{name}");
+            assert_eq!(ObvhsCwbvh::build(&scene).validate(&scene), Ok(()), "{name}");
         }
     }
 }

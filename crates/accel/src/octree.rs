@@ -2,8 +2,8 @@ use std::collections::VecDeque;
 
 use glam::DVec3;
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
-use lancer_core::intersector::{Hit, Observer, Probe, Traversal};
-use lancer_core::scene::{PrimitiveId, Scene};
+use lancer_core::intersector::{Hit, Observer, Probe, Query, Traversal};
+use lancer_core::scene::{PrimitiveId, Scene, Subset};
 use smallvec::SmallVec;
 
 use crate::cells::{Cell, RayCells, search};
@@ -105,21 +105,23 @@ struct Uncut {
 }
 
 impl OctreeBuilder {
-    /// Builds the octree over all primitives of the scene.
-    pub fn build(self, scene: &Scene) -> Octree<'_> {
-        let slack = slack(scene.bounds());
-        let bounds = scene.bounds().grown(slack);
+    /// Builds the octree.
+    pub fn build<'s>(self, primitives: impl Into<Subset<'s>>) -> Octree<'s> {
+        let all = primitives.into();
+        let (scene, bounds) = (all.scene(), all.bounds());
+        let slack = slack(bounds);
+        let bounds = bounds.grown(slack);
         // The scene is in the cube's lower corner: in the middle a flat one would lie on both sides of
         // a plane.
         let half = 0.5 * (bounds.max - bounds.min).max_element();
         let root = Cube { center: bounds.min + half, half };
         let mut nodes = vec![Node::Leaf(0, 0)];
         let mut primitives = Vec::new();
-        let mut references = scene.primitives().len();
+        let mut references = all.len();
         let most = MAX_REFERENCES * references;
-        let all = Uncut { node: 0, cube: root, depth: 0, primitives: scene.primitives().collect() };
+        let everything = Uncut { node: 0, cube: root, depth: 0, primitives: all.iter().collect() };
         // Level by level, so that the limit of references, if it is met, is met everywhere alike.
-        let mut queue = VecDeque::from([all]);
+        let mut queue = VecDeque::from([everything]);
         while let Some(uncut) = queue.pop_front() {
             let count = uncut.primitives.len();
             // Planes must be farther apart than what the primitives are grown by; with that slack in
@@ -178,8 +180,8 @@ fn cut(scene: &Scene, slack: f64, uncut: &Uncut) -> [Vec<PrimitiveId>; 8] {
 
 impl<'s> Octree<'s> {
     /// Builds the octree with the default parameters.
-    pub fn build(scene: &'s Scene) -> Self {
-        OctreeBuilder::default().build(scene)
+    pub fn build(primitives: impl Into<Subset<'s>>) -> Self {
+        OctreeBuilder::default().build(primitives)
     }
 
     /// Bytes held by the index, without the scene it borrows.
@@ -232,9 +234,9 @@ impl<'s> Octree<'s> {
         Some(Descent { tree: self, line, pending })
     }
 
-    /// Checks that every node is reached once and no deeper than the limit, that every primitive is in
-    /// the leaves of its corners, and that no leaf holds what does not come near it.
-    pub fn validate(&self) -> Result<(), String> {
+    /// Checks that every node is reached once and no deeper than the limit, that every one of these
+    /// primitives is in the leaves of its corners, and that no leaf holds what does not come near it.
+    pub fn validate<'p>(&self, all: impl Into<Subset<'p>>) -> Result<(), String> {
         let mut reached = vec![false; self.nodes.len()];
         let mut pending = vec![(0, self.root, 0)];
         while let Some((node, cube, depth)) = pending.pop() {
@@ -265,7 +267,7 @@ impl<'s> Octree<'s> {
         if reached.contains(&false) {
             return Err("a node is not reached".into());
         }
-        for primitive in self.scene.primitives() {
+        for primitive in all.into().iter() {
             for point in surface_points(self.scene, primitive) {
                 if self.leaf_at(point).binary_search(&primitive).is_err() {
                     return Err(format!("{primitive:?} is missing from the leaf at {point}"));
@@ -294,15 +296,10 @@ impl Traversal for Octree<'_> {
     /// Visits the primitives of leaf after leaf along the ray, until any hit will do or the closest is
     /// nearer than all other cubes.
     #[inline]
-    fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        observer: &mut O,
-    ) -> Option<Hit> {
+    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
+        let &Query { ref ray, range, wanted } = query;
         let descent = self.descent(ray, range)?;
-        search(descent, Probe::new(self.scene, ray, range), self.mailboxing, any, observer)
+        search(descent, Probe::new(self.scene, ray, range), self.mailboxing, wanted, observer)
     }
 }
 

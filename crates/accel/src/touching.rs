@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use lancer_core::geometry::{Bounds3, Ray, Sphere};
-use lancer_core::scene::{PrimitiveId, Scene};
+use lancer_core::scene::{PrimitiveId, Scene, Shape};
 use smallvec::SmallVec;
 
 /// Every rounded operation in question, and few of them follow each other, errs by half an ε.
@@ -73,22 +73,21 @@ impl Projection {
 impl Footprint {
     /// The surface of a primitive, grown by the slack.
     pub(crate) fn new(scene: &Scene, primitive: PrimitiveId, slack: f64) -> Self {
-        let index = primitive.0 as usize;
-        let Some(sphere) = index.checked_sub(scene.mesh.triangles.len()) else {
-            let corners = scene.mesh.corners(index);
-            let [a, b, c] = corners;
-            let edges = [b - a, c - b, a - c];
-            let normal = edges[0].cross(edges[1]);
-            let mut projections = [Projection::new(normal, corners, slack); 10];
-            for (k, edge) in edges.into_iter().enumerate() {
-                for (axis, unit) in DVec3::AXES.into_iter().enumerate() {
-                    projections[1 + 3 * k + axis] =
-                        Projection::new(edge.cross(unit), corners, slack);
-                }
-            }
-            return Self::Triangle(projections);
+        let index = match scene.shape(primitive) {
+            Shape::Triangle(index) => index,
+            Shape::Sphere(index) => return Self::Sphere(scene.spheres[index].shape, slack),
         };
-        Self::Sphere(scene.spheres[sphere].shape, slack)
+        let corners = scene.mesh.corners(index);
+        let [a, b, c] = corners;
+        let edges = [b - a, c - b, a - c];
+        let normal = edges[0].cross(edges[1]);
+        let mut projections = [Projection::new(normal, corners, slack); 10];
+        for (k, edge) in edges.into_iter().enumerate() {
+            for (axis, unit) in DVec3::AXES.into_iter().enumerate() {
+                projections[1 + 3 * k + axis] = Projection::new(edge.cross(unit), corners, slack);
+            }
+        }
+        Self::Triangle(projections)
     }
 
     /// Whether the surface comes near a box that its own bounds overlap.
@@ -115,16 +114,15 @@ impl Footprint {
 
 /// Some points of a primitive's surface, for validation: a triangle's corners, a sphere's poles.
 pub(crate) fn surface_points(scene: &Scene, primitive: PrimitiveId) -> SmallVec<[DVec3; 10]> {
-    let index = primitive.0 as usize;
-    match index.checked_sub(scene.mesh.triangles.len()) {
-        None => {
+    match scene.shape(primitive) {
+        Shape::Triangle(index) => {
             let [a, b, c] = scene.mesh.corners(index);
             let weights = (0..=3).flat_map(|i| (0..=3 - i).map(move |j| (i, j)));
             let at = |(i, j)| a + (b - a) * (f64::from(i) / 3.0) + (c - a) * (f64::from(j) / 3.0);
             weights.map(at).collect()
         }
-        Some(sphere) => {
-            let Sphere { center, radius } = scene.spheres[sphere].shape;
+        Shape::Sphere(index) => {
+            let Sphere { center, radius } = scene.spheres[index].shape;
             DVec3::AXES.iter().flat_map(|&k| [center - radius * k, center + radius * k]).collect()
         }
     }

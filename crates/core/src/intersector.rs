@@ -7,7 +7,7 @@ use glam::DVec3;
 use crate::geometry::{
     Bounds3, ConvexVolume, Interval, Ray, Shear, intersect_triangle, solve_triangle,
 };
-use crate::scene::{PrimitiveId, Scene};
+use crate::scene::{PrimitiveId, Scene, Shape, Subset};
 
 /// The closest primitive that a ray meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,6 +18,40 @@ pub struct Hit {
     pub primitive: PrimitiveId,
     /// Weights of a triangle's corners; zero on a sphere, which has none.
     pub barycentric: DVec3,
+}
+
+/// Which hit answers a [`Query`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// The closest.
+    Closest,
+    /// Any: the search ends with the one met first.
+    Any,
+}
+
+/// What an index is asked: whether and where a ray meets something.
+#[derive(Clone, Copy, Debug)]
+pub struct Query {
+    /// The ray.
+    pub ray: Ray,
+    /// Where it looks.
+    pub range: Interval,
+    /// What answers it.
+    pub wanted: Wanted,
+}
+
+impl Query {
+    /// Asks for the closest hit.
+    #[inline]
+    pub const fn closest(ray: Ray, range: Interval) -> Self {
+        Self { ray, range, wanted: Wanted::Closest }
+    }
+
+    /// Asks for any hit.
+    #[inline]
+    pub const fn any(ray: Ray, range: Interval) -> Self {
+        Self { ray, range, wanted: Wanted::Any }
+    }
 }
 
 /// An index of a scene's primitives.
@@ -43,54 +77,44 @@ pub trait Intersector: Sync {
 
     /// Whether the ray meets anything in `range`.
     fn occluded(&self, ray: &Ray, range: Interval) -> bool;
+
+    /// Answers as [`Intersector::closest_hit`] or, if any hit will do, as [`Intersector::occluded`] with the
+    /// hit met first, and tells the observer its work.
+    fn watch(&self, query: &Query, observer: &mut dyn Observer) -> Option<Hit>;
+
+    /// The same index as beams ask it, if they can.
+    fn beams(&self) -> Option<&dyn BeamIndex> {
+        None
+    }
 }
 
-/// An [`Intersector`] whose work can be watched, whatever its type.
-pub trait Observable: Intersector {
-    /// Answers as [`Intersector::closest_hit`] or, if any hit will do, as [`Intersector::occluded`]: with
-    /// the hit met first.
-    fn watch(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        observer: &mut dyn Observer,
-    ) -> Option<Hit>;
-}
-
-/// An index whose every question is one traversal, which can be watched. It is an [`Intersector`], and
-/// [`Observable`].
+/// An index whose every question is one traversal. It is an [`Intersector`].
 pub trait Traversal: Sync {
-    /// Visits primitives that the ray may meet in `range` until none can be nearer than the closest met
-    /// or, if `any` hit will do, one is met. Returns the closest.
-    fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        observer: &mut O,
-    ) -> Option<Hit>;
+    /// Visits primitives that the ray may meet in its range until none can be nearer than the closest met
+    /// or, if any hit will do, one is met. Returns the closest.
+    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit>;
+
+    /// What [`Intersector::beams`] says.
+    fn beams(&self) -> Option<&dyn BeamIndex> {
+        None
+    }
 }
 
 impl<T: Traversal> Intersector for T {
     fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
-        self.walk(ray, range, false, &mut ())
+        self.walk(&Query::closest(*ray, range), &mut ())
     }
 
     fn occluded(&self, ray: &Ray, range: Interval) -> bool {
-        self.walk(ray, range, true, &mut ()).is_some()
+        self.walk(&Query::any(*ray, range), &mut ()).is_some()
     }
-}
 
-impl<T: Traversal> Observable for T {
-    fn watch(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        mut observer: &mut dyn Observer,
-    ) -> Option<Hit> {
-        self.walk(ray, range, any, &mut observer)
+    fn watch(&self, query: &Query, mut observer: &mut dyn Observer) -> Option<Hit> {
+        self.walk(query, &mut observer)
+    }
+
+    fn beams(&self) -> Option<&dyn BeamIndex> {
+        Traversal::beams(self)
     }
 }
 
@@ -235,15 +259,15 @@ impl<'s> Probe<'s> {
     /// Tests one primitive and keeps it if it wins. Returns whether it does.
     #[inline(always)]
     pub fn test(&mut self, primitive: PrimitiveId) -> bool {
-        let index = primitive.0 as usize;
-        let triangles = self.scene.mesh.triangles.len();
-        if index < triangles {
-            return self.test_triangle(primitive, self.scene.mesh.corners(index));
+        match self.scene.shape(primitive) {
+            Shape::Triangle(index) => self.test_triangle(primitive, self.scene.mesh.corners(index)),
+            Shape::Sphere(index) => {
+                // The sphere's own range test would hide ties at the far end.
+                let range = Interval { min: self.range.min, max: f64::INFINITY };
+                let t = self.scene.spheres[index].shape.intersect(self.ray, range);
+                t.is_some_and(|t| self.keep(Hit { t, primitive, barycentric: DVec3::ZERO }))
+            }
         }
-        // The sphere's own range test would hide ties at the far end.
-        let range = Interval { min: self.range.min, max: f64::INFINITY };
-        let t = self.scene.spheres[index - triangles].shape.intersect(self.ray, range);
-        t.is_some_and(|t| self.keep(Hit { t, primitive, barycentric: DVec3::ZERO }))
     }
 
     /// The same for a triangle whose corners are known.
@@ -291,36 +315,37 @@ impl<'s> Probe<'s> {
 }
 
 /// Brute force: every primitive for every ray. The oracle of all other indexes.
-#[derive(Clone, Copy, Debug)]
-pub struct LinearScan<'s> {
-    scene: &'s Scene,
-}
+#[derive(Clone, Debug)]
+pub struct LinearScan<'s>(Subset<'s>);
 
 impl<'s> LinearScan<'s> {
-    /// There is nothing to build.
-    pub fn new(scene: &'s Scene) -> Self {
-        Self { scene }
+    /// There is nothing to build: the primitives are tested in order.
+    pub fn new(primitives: impl Into<Subset<'s>>) -> Self {
+        Self(primitives.into())
+    }
+
+    /// Bytes held by the index, without the scene it borrows: nothing over all primitives.
+    pub fn memory(&self) -> usize {
+        self.0.memory()
     }
 }
 
 impl Traversal for LinearScan<'_> {
     /// Visits the primitives in order until any hit will do.
     #[inline]
-    fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        observer: &mut O,
-    ) -> Option<Hit> {
-        let mut probe = Probe::new(self.scene, ray, range);
-        for primitive in self.scene.primitives() {
+    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
+        let mut probe = Probe::new(self.0.scene(), &query.ray, query.range);
+        for primitive in self.0.iter() {
             observer.primitive_test(primitive);
-            if probe.test(primitive) && any {
+            if probe.test(primitive) && query.wanted == Wanted::Any {
                 break;
             }
         }
         probe.best()
+    }
+
+    fn beams(&self) -> Option<&dyn BeamIndex> {
+        Some(self)
     }
 }
 
@@ -335,9 +360,9 @@ impl BeamTraversal for LinearScan<'_> {
     ) {
         let depth = |primitive| {
             observer.primitive_test(primitive);
-            Some((self.scene.depth_in(volume, primitive)?, primitive))
+            Some((self.0.scene().depth_in(volume, primitive)?, primitive))
         };
-        let mut met: Vec<(f64, PrimitiveId)> = self.scene.primitives().filter_map(depth).collect();
+        let mut met: Vec<(f64, PrimitiveId)> = self.0.iter().filter_map(depth).collect();
         met.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         for (depth, primitive) in met {
             if depth > far {
@@ -345,47 +370,5 @@ impl BeamTraversal for LinearScan<'_> {
             }
             far = far.min(visit(primitive));
         }
-    }
-}
-
-impl Scene {
-    /// The ids of all primitives, in order.
-    pub fn primitives(&self) -> impl ExactSizeIterator<Item = PrimitiveId> + use<> {
-        (0..(self.mesh.triangles.len() + self.spheres.len()) as u32).map(PrimitiveId)
-    }
-
-    /// The smallest box around one primitive, up to the rounding of a sphere's extent. A hit may lie
-    /// beside it by the rounding of the ray: indexes widen their boxes by that much.
-    pub fn primitive_bounds(&self, primitive: PrimitiveId) -> Bounds3 {
-        let index = primitive.0 as usize;
-        let triangles = self.mesh.triangles.len();
-        if index < triangles {
-            Bounds3::of_points(self.mesh.corners(index))
-        } else {
-            let sphere = self.spheres[index - triangles].shape;
-            let reach = DVec3::splat(sphere.radius);
-            Bounds3 { min: sphere.center - reach, max: sphere.center + reach }
-        }
-    }
-
-    /// The depth of a primitive's nearest point along the axis of a beam, inside it or not, or less by its
-    /// rounding; `None` if the primitive is entirely beside it. A sphere counts as its box.
-    pub fn depth_in(&self, volume: &ConvexVolume, primitive: PrimitiveId) -> Option<f64> {
-        let index = primitive.0 as usize;
-        if index < self.mesh.triangles.len() {
-            let corners = self.mesh.corners(index);
-            return volume.may_meet_corners(&corners).then(|| volume.depth_of_corners(&corners));
-        }
-        // The rounding of a sphere's extent.
-        let Bounds3 { min, max } = self.primitive_bounds(primitive);
-        let bounds = Bounds3 { min: min.map(f64::next_down), max: max.map(f64::next_up) };
-        volume.may_meet(&bounds).then(|| volume.depth(&bounds))
-    }
-
-    /// The smallest box around everything.
-    pub fn bounds(&self) -> Bounds3 {
-        self.primitives()
-            .map(|primitive| self.primitive_bounds(primitive))
-            .fold(Bounds3::EMPTY, Bounds3::union)
     }
 }

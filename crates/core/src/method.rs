@@ -10,7 +10,7 @@ use crate::image::{Image, ImageSize};
 use crate::intersector::Intersector;
 use crate::render::{Cancelled, Control, Estimator, render_adaptive, render_pixels};
 use crate::sampling::PixelSampling;
-use crate::scene::Scene;
+use crate::scene::{Scene, Subset};
 
 /// A way to draw scenes.
 pub struct Method {
@@ -90,15 +90,15 @@ pub struct ByProduct {
 pub const SAMPLES: ByProduct =
     ByProduct { name: "samples", about: "how many samples are in each pixel" };
 
-/// Builds an index of a scene.
-pub type BuildIndex<'a> = dyn for<'s> Fn(&'s Scene) -> Box<dyn Intersector + 's> + 'a;
+/// Builds an index over some primitives of a scene, or over all.
+pub type BuildIndex<'a> = dyn for<'s> Fn(Subset<'s>) -> Box<dyn Intersector + 's> + 'a;
 
 /// A picture that is asked for.
 #[derive(Clone, Copy)]
 pub struct Order<'a> {
     /// What there is.
     pub scene: &'a Scene,
-    /// Builds an index of the scene, of the kind that is asked for.
+    /// Builds an index of the kind that is asked for.
     pub index: &'a BuildIndex<'a>,
     /// Width and height.
     pub size: ImageSize,

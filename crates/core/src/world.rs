@@ -7,7 +7,7 @@ use crate::geometry::{Ray, gamma, leave_surface};
 use crate::illumination::Reflectance;
 use crate::intersector::{Hit, Intersector};
 use crate::optics::reflect;
-use crate::scene::{MaterialId, Scene};
+use crate::scene::{MaterialId, Scene, Shape};
 
 /// Rounded operations between a triangle's corners and the point that its weights give.
 const POSITION: u32 = 7;
@@ -47,12 +47,9 @@ impl Scene {
     /// The surface at a hit of `ray`.
     #[inline]
     pub fn surface_at(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
-        let index = hit.primitive.0 as usize;
-        let triangles = self.mesh.triangles.len();
-        if index < triangles {
-            self.triangle_surface(index, hit.barycentric, ray.direction)
-        } else {
-            self.sphere_surface(index - triangles, ray.at(hit.t))
+        match self.shape(hit.primitive) {
+            Shape::Triangle(index) => self.triangle_surface(index, hit.barycentric, ray.direction),
+            Shape::Sphere(index) => self.sphere_surface(index, ray.at(hit.t)),
         }
     }
 

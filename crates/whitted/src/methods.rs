@@ -13,7 +13,7 @@ pub static METHODS: [Method; 2] = [
         ignores: &[Effect::Mirrors, Effect::Glass, Effect::AreaLights],
         by_products: &[SAMPLES],
         render: |order| {
-            let index = (order.index)(order.scene);
+            let index = (order.index)(order.scene.into());
             let world = World { scene: order.scene, index: &*index };
             let appel = Appel::new(world);
             order.sample(PrimaryHits::new(
@@ -30,7 +30,7 @@ pub static METHODS: [Method; 2] = [
         ignores: &[Effect::AreaLights],
         by_products: &[SAMPLES],
         render: |order| {
-            let index = (order.index)(order.scene);
+            let index = (order.index)(order.scene.into());
             let world = World { scene: order.scene, index: &*index };
             let whitted = Whitted::new(world, Settings::of(order));
             order.sample(PrimaryHits::new(

@@ -4,7 +4,7 @@ use glam::DVec3;
 use lancer_core::Rgb;
 use lancer_core::geometry::Ray;
 use lancer_core::image::{Image, ImageSize};
-use lancer_core::scene::Scene;
+use lancer_core::scene::{Scene, Shape};
 use lancer_exercise::{Card, Check, Exercise, Shown, Solution, Verdict, slips, within};
 use lancer_lesson::scenes::parsed;
 use lancer_whitted::{RayEnd, RayNode};
@@ -411,10 +411,9 @@ fn described(scene: &Scene, node: &RayNode) -> String {
         RayEnd::Background => "meets nothing".to_owned(),
         RayEnd::Cut => "is beyond Max_Prof".to_owned(),
         RayEnd::Surface { hit, position, .. } => {
-            let (index, triangles) = (hit.primitive.0 as usize, scene.mesh.triangles.len());
-            let shape = match index.checked_sub(triangles) {
-                None => format!("triangle {index}"),
-                Some(index) => format!("sphere {index}"),
+            let shape = match scene.shape(hit.primitive) {
+                Shape::Triangle(index) => format!("triangle {index}"),
+                Shape::Sphere(index) => format!("sphere {index}"),
             };
             format!("meets {shape} at {}", position.shown())
         }

@@ -3,8 +3,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use glam::DVec3;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::illumination::Reflectance;
-use lancer_core::intersector::{Hit, Intersector};
-use lancer_core::scene::{PointSource, Scene};
+use lancer_core::intersector::{Hit, Intersector, Observer, Query, Traversal, Wanted};
+use lancer_core::scene::{PointSource, Scene, Shape};
 use lancer_core::world::SurfacePoint;
 use lancer_exercise::Shown;
 use lancer_whitted::{Call, RayKind};
@@ -67,16 +67,14 @@ impl<'a> Stage<'a> {
     }
 
     fn hits<'s>(&'s self, ray: &'s Ray, range: Interval) -> impl Iterator<Item = Hit> + 's {
-        let triangles = self.scene.mesh.triangles.len();
         self.scene.primitives().filter_map(move |primitive| {
-            let index = primitive.0 as usize;
-            let (t, barycentric) = match index.checked_sub(triangles) {
-                None => {
+            let (t, barycentric) = match self.scene.shape(primitive) {
+                Shape::Triangle(index) => {
                     let corners = self.scene.mesh.corners(index);
                     let hit = (self.subject.ray_triangle)(corners, ray)?;
                     (!starts_on(corners, ray, hit.0)).then_some(hit)?
                 }
-                Some(index) => {
+                Shape::Sphere(index) => {
                     let sphere = &self.scene.spheres[index].shape;
                     ((self.subject.ray_sphere)(sphere, ray)?, DVec3::ZERO)
                 }
@@ -97,14 +95,16 @@ fn starts_on(corners: [DVec3; 3], ray: &Ray, t: f64) -> bool {
     height <= 64.0 * f64::EPSILON * reach.into_iter().fold(0.0, f64::max)
 }
 
-impl Intersector for Stage<'_> {
-    fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
-        self.count_traced();
-        self.hits(ray, range).min_by(|a, b| a.t.total_cmp(&b.t))
-    }
-
-    fn occluded(&self, ray: &Ray, range: Interval) -> bool {
-        self.hits(ray, range).next().is_some()
+impl Traversal for Stage<'_> {
+    fn walk<O: Observer>(&self, query: &Query, _observer: &mut O) -> Option<Hit> {
+        let mut hits = self.hits(&query.ray, query.range);
+        match query.wanted {
+            Wanted::Closest => {
+                self.count_traced();
+                hits.min_by(|a, b| a.t.total_cmp(&b.t))
+            }
+            Wanted::Any => hits.next(),
+        }
     }
 }
 

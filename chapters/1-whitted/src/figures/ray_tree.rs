@@ -5,9 +5,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use glam::DVec2;
 use lancer_accel::ObvhsBvh2;
 use lancer_core::Rgb;
-use lancer_core::geometry::{Interval, Ray};
 use lancer_core::image::ImageSize;
-use lancer_core::intersector::{Hit, Intersector};
+use lancer_core::intersector::{Hit, Intersector, Observer, Query, Traversal, Wanted};
 use lancer_core::scene::Scene;
 use lancer_core::scene::load::Loaded;
 use lancer_core::world::World;
@@ -111,15 +110,14 @@ struct Counting<'a> {
     occluded: AtomicUsize,
 }
 
-impl Intersector for Counting<'_> {
-    fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
-        self.closest.fetch_add(1, Ordering::Relaxed);
-        self.index.closest_hit(ray, range)
-    }
-
-    fn occluded(&self, ray: &Ray, range: Interval) -> bool {
-        self.occluded.fetch_add(1, Ordering::Relaxed);
-        self.index.occluded(ray, range)
+impl Traversal for Counting<'_> {
+    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
+        let count = match query.wanted {
+            Wanted::Closest => &self.closest,
+            Wanted::Any => &self.occluded,
+        };
+        count.fetch_add(1, Ordering::Relaxed);
+        self.index.watch(query, observer)
     }
 }
 

@@ -7,7 +7,7 @@ use lancer_accel::ObvhsBvh2;
 use lancer_core::Rgb;
 use lancer_core::geometry::{Interval, Ray, Shear, intersect_triangle};
 use lancer_core::image::ImageSize;
-use lancer_core::intersector::{Hit, LinearScan, TestCounts, Traversal};
+use lancer_core::intersector::{Hit, LinearScan, Query, TestCounts, Traversal};
 use lancer_core::sampling::Uniform;
 use lancer_core::scene::{Camera, Material, MaterialId, Mesh, PrimaryRays, Scene};
 use lancer_figure::{
@@ -255,11 +255,11 @@ const METHODS: [(&str, Method); 4] = [
     }),
     ("rays: all polygons", |view| {
         let index = LinearScan::new(&view.scene);
-        view.cast(|ray, counts| index.walk(ray, Interval::POSITIVE, false, counts))
+        view.cast(|ray, counts| index.walk(&Query::closest(*ray, Interval::POSITIVE), counts))
     }),
     ("rays: tree", |view| {
         let index = ObvhsBvh2::build(&view.scene);
-        view.cast(|ray, counts| index.walk(ray, Interval::POSITIVE, false, counts))
+        view.cast(|ray, counts| index.walk(&Query::closest(*ray, Interval::POSITIVE), counts))
     }),
 ];
 const PAINTERS: usize = 2;

@@ -3,7 +3,7 @@
 use lancer_accel::ObvhsBvh2;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::image::ImageSize;
-use lancer_core::intersector::{Intersector, LinearScan, Observable, TestCounts};
+use lancer_core::intersector::{Intersector, LinearScan, Query, TestCounts, Wanted};
 use lancer_core::scene::Scene;
 use lancer_core::world::World;
 use lancer_figure::{
@@ -24,20 +24,13 @@ const RUNS: usize = 25;
 #[derive(Default)]
 struct Queries(Vec<Query>);
 
-struct Query {
-    ray: Ray,
-    range: Interval,
-    /// Whether any hit will do: a shadow ray.
-    any: bool,
-}
-
 impl Recorder for Queries {
     fn enter(&mut self, call: &Call) {
-        self.0.push(Query { ray: call.ray, range: Interval::POSITIVE, any: false });
+        self.0.push(Query::closest(call.ray, Interval::POSITIVE));
     }
 
     fn shadow(&mut self, ray: &Ray, _visible: bool) {
-        self.0.push(Query { ray: *ray, range: Interval::up_to(1.0), any: true });
+        self.0.push(Query::any(*ray, Interval::up_to(1.0)));
     }
 }
 
@@ -51,7 +44,7 @@ struct Case<'s> {
     scene_name: &'static str,
     scene: &'s Scene,
     index_name: &'static str,
-    index: Box<dyn Observable + 's>,
+    index: Box<dyn Intersector + 's>,
     size: ImageSize,
     queries: Vec<Query>,
     counts: TestCounts,
@@ -64,15 +57,15 @@ impl<'s> Case<'s> {
         index_name: &'static str,
         size: ImageSize,
     ) -> Self {
-        let index: Box<dyn Observable> = match index_name {
+        let index: Box<dyn Intersector> = match index_name {
             "linear" => Box::new(LinearScan::new(scene)),
             _ => Box::new(ObvhsBvh2::build(scene)),
         };
         let mut queries = Queries::default();
         picture(scene, &*index, size, &mut queries);
         let (queries, mut counts) = (queries.0, TestCounts::default());
-        for Query { ray, range, any } in &queries {
-            index.watch(ray, *range, *any, &mut counts);
+        for query in &queries {
+            index.watch(query, &mut counts);
         }
         Self { scene_name, scene, index_name, index, size, queries, counts }
     }
@@ -97,9 +90,9 @@ impl<'s> Case<'s> {
 
     /// Only the queries. Returns the number of hits.
     fn replay(&self) -> f64 {
-        let hits = self.queries.iter().filter(|query| match query.any {
-            false => self.index.closest_hit(&query.ray, query.range).is_some(),
-            true => self.index.occluded(&query.ray, query.range),
+        let hits = self.queries.iter().filter(|query| match query.wanted {
+            Wanted::Closest => self.index.closest_hit(&query.ray, query.range).is_some(),
+            Wanted::Any => self.index.occluded(&query.ray, query.range),
         });
         hits.count() as f64
     }

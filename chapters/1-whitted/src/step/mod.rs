@@ -13,7 +13,7 @@ use lancer_core::image::{Image, ImageSize};
 use lancer_core::intersector::Hit;
 use lancer_core::method::Setting;
 use lancer_core::optics::indices;
-use lancer_core::scene::{PointSource, Scene};
+use lancer_core::scene::{PointSource, Scene, Shape};
 use lancer_core::world::{SurfacePoint, World};
 use lancer_exercise::Shown;
 use lancer_figure::{Backdrop, Color, INK, Pen, Step, Stroke, Walk, number};
@@ -198,11 +198,12 @@ impl Walker<'_> {
         terms: &LocalTerms,
     ) -> Step {
         let ray = node.call.ray;
-        let index = hit.primitive.0 as usize;
         let mesh = &self.scene.mesh;
-        let shape = match index.checked_sub(mesh.triangles.len()) {
-            Some(sphere) => format!("sphere {sphere}"),
-            None => format!("triangle {index} of face {}", mesh.triangles[index].face.0),
+        let shape = match self.scene.shape(hit.primitive) {
+            Shape::Sphere(index) => format!("sphere {index}"),
+            Shape::Triangle(index) => {
+                format!("triangle {index} of face {}", mesh.triangles[index].face.0)
+            }
         };
         let n = surface.shading_normal_towards(-ray.direction);
         let outside = surface.geometric_normal.dot(ray.direction) < 0.0;

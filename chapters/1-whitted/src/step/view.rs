@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use lancer_core::geometry::Sphere;
-use lancer_core::scene::Scene;
+use lancer_core::scene::{Scene, Shape};
 use lancer_figure::{Backdrop, Color, INK, MUTED, Point, Tree, category_color};
 use lancer_lesson::view::{Side, View};
 use lancer_whitted::{RayEnd, RayKind, RayTree};
@@ -44,11 +44,10 @@ pub fn of_rays(scene: &Scene, tree: &RayTree) -> View {
         if let RayEnd::Surface { hit, position, .. } = node.end {
             paths.push((node.call.ray.origin, position));
             ends.push((position, 0.0));
-            let sphere = (hit.primitive.0 as usize).checked_sub(scene.mesh.triangles.len());
-            ends.extend(sphere.map(|index| {
+            if let Shape::Sphere(index) = scene.shape(hit.primitive) {
                 let Sphere { center, radius } = scene.spheres[index].shape;
-                (center, radius)
-            }));
+                ends.push((center, radius));
+            }
         }
     }
     // A pixel that meets nothing is seen before the eye, as far as the middle of the picture.

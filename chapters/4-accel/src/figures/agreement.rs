@@ -5,7 +5,7 @@ use lancer_accel::Grid;
 use lancer_core::generate::{cube, icosphere};
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::image::ImageSize;
-use lancer_core::intersector::{Hit, Intersector, LinearScan};
+use lancer_core::intersector::{Hit, Intersector, LinearScan, Query};
 use lancer_core::sampling::Uniform;
 use lancer_core::scene::{Mesh, Scene};
 use lancer_figure::{
@@ -16,7 +16,7 @@ use lancer_figure::{
 use super::is_off;
 use crate::aimed::{CLASSES, aimed};
 use crate::naive::{BareTree, LibraryWalk, first_hit_wins};
-use crate::rays::{Kind, Query, Rays};
+use crate::rays::{Kind, Rays};
 use crate::scenes::family;
 use lancer_accel::structures::{STRUCTURES, structure};
 
@@ -141,7 +141,7 @@ fn count(scene: &Scene, class: &'static str, rays: &[Ray], cases: &mut Vec<Case>
         cases.push(Case { contender, naive, class, rays, wrong });
     };
     for structure in STRUCTURES.into_iter().filter(|structure| structure.name != "linear") {
-        let built = (structure.build)(scene);
+        let built = structure.build(scene);
         add(structure.name, None, &|ray, truth| {
             differs(built.index.closest_hit(ray, Interval::POSITIVE), truth)
                 || built.index.occluded(ray, Interval::POSITIVE) != truth.is_some()
@@ -161,7 +161,7 @@ fn speed(effort: Effort) -> (BarChart, String) {
     let scene = family("scan").scene(count);
     let library = LibraryWalk::build(&scene);
     let names = ["obvhs-bvh2", "bvh", "wide"];
-    let built = names.map(|name| (structure(name).build)(&scene));
+    let built = names.map(|name| structure(name).build(&scene));
     let rays = Rays::of(&scene, size, &*built[0].index);
     let asked: usize = rays.iter().map(|rays| rays.queries.len()).sum();
     let off: usize = rays

@@ -5,13 +5,13 @@ use std::collections::HashSet;
 use lancer_accel::Wide;
 use lancer_core::geometry::{Bounds3, Interval, Ray};
 use lancer_core::image::ImageSize;
-use lancer_core::intersector::{Hit, Intersector, Observable, Observer};
+use lancer_core::intersector::{Hit, Intersector, Observer, Query, Wanted};
 use lancer_figure::{
     Axis, Chart, Effort, Finished, Plate, Row, Series, Table, Value, category_color, decimals,
     time_in_turn,
 };
 
-use crate::rays::{Kind, Query, Rays};
+use crate::rays::{Kind, Rays};
 use crate::scenes::family;
 
 const FAMILIES: [&str; 2] = ["scan", "town"];
@@ -59,7 +59,7 @@ pub fn make(effort: Effort) -> Finished {
                         boxes: boxes_per_ray(&index, &rays, group),
                     }));
                 }
-                if !rays.kind.any() {
+                if rays.kind.wanted() == Wanted::Closest {
                     asked += rays.queries.len();
                     same &= answers_agree(&index, &rays);
                     let [alone, together] = nanoseconds(&index, &rays, runs);
@@ -101,7 +101,9 @@ pub fn make(effort: Effort) -> Finished {
     let times = |name: &'static str| {
         let mut chart = Chart::new(Axis::log("triangles, n"), Axis::log("nanoseconds per ray"))
             .title(format!("{name}: time (one thread)"));
-        for (k, kind) in Kind::ALL.into_iter().enumerate().filter(|(_, kind)| !kind.any()) {
+        for (k, kind) in
+            Kind::ALL.into_iter().enumerate().filter(|(_, kind)| kind.wanted() == Wanted::Closest)
+        {
             for (label, value) in [
                 (ALONE, (|case| case.alone) as fn(&Timed) -> f64),
                 (TOGETHER, |case| case.together),
@@ -175,7 +177,7 @@ fn boxes_per_ray(index: &Wide, rays: &Rays, group: usize) -> f64 {
     let asked = |queries: &[Query]| {
         let mut boxes = Boxes::default();
         for query in queries {
-            index.watch(&query.ray, query.range, rays.kind.any(), &mut boxes);
+            index.watch(query, &mut boxes);
         }
         boxes.0.into_iter().collect::<HashSet<_>>().len()
     };

@@ -3,7 +3,7 @@
 use glam::UVec3;
 use lancer_accel::GridBuilder;
 use lancer_core::image::ImageSize;
-use lancer_core::intersector::{Hit, LinearScan, Observable, TestCounts};
+use lancer_core::intersector::{Hit, Intersector, LinearScan, TestCounts};
 use lancer_core::scene::{Camera, Scene};
 use lancer_figure::{
     Axis, Chart, Effort, Finished, Montage, Plate, Row, Series, Table, Tile, category_color,
@@ -42,7 +42,7 @@ impl Work {
 
 impl Questions {
     fn new(scene: &Scene, size: ImageSize) -> Self {
-        let rays = Rays::of(scene, size, &*(structure("bvh").build)(scene).index);
+        let rays = Rays::of(scene, size, &*structure("bvh").build(scene).index);
         let oracle = LinearScan::new(scene);
         let hits = rays.iter().map(|rays| rays.watch(&oracle).0).collect();
         Self { rays, hits }
@@ -52,7 +52,7 @@ impl Questions {
         self.rays.iter().map(|rays| rays.queries.len()).sum()
     }
 
-    fn ask(&self, index: &dyn Observable) -> Work {
+    fn ask(&self, index: &dyn Intersector) -> Work {
         let (mut counts, mut wrong) = (TestCounts::default(), false);
         for (rays, expected) in self.rays.iter().zip(&self.hits) {
             let (hits, more) = rays.watch(index);
@@ -117,7 +117,7 @@ pub fn make(effort: Effort) -> Finished {
     let others: Vec<(&str, f64, Work)> = OTHERS
         .into_iter()
         .map(|name| {
-            let built = (structure(name).build)(&stadium);
+            let built = structure(name).build(&stadium);
             let bytes = built.bytes as f64 / stadium.primitives().len() as f64;
             (name, bytes, in_stadium.ask(&*built.index))
         })

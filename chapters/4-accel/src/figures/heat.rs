@@ -2,7 +2,7 @@
 
 use lancer_core::geometry::Interval;
 use lancer_core::image::ImageSize;
-use lancer_core::intersector::{Hit, LinearScan, Observable, TestCounts};
+use lancer_core::intersector::{Hit, Intersector, LinearScan, Query, TestCounts};
 use lancer_core::scene::Scene;
 use lancer_figure::{
     Effort, Finished, HeatScale, Montage, Plate, Table, Tile, decimals, method_color, number,
@@ -13,14 +13,18 @@ use crate::scenes::family;
 use lancer_accel::structures::STRUCTURES;
 
 /// What every pixel's ray met, and the work it took.
-fn watch(scene: &Scene, size: ImageSize, index: &dyn Observable) -> Vec<(Option<Hit>, TestCounts)> {
+fn watch(
+    scene: &Scene,
+    size: ImageSize,
+    index: &dyn Intersector,
+) -> Vec<(Option<Hit>, TestCounts)> {
     let rays = scene.camera.primary_rays(size);
     let pixels = (0..size.height).flat_map(|y| (0..size.width).map(move |x| (x, y)));
     pixels
         .map(|(x, y)| {
             let ray = rays.through(f64::from(x) + 0.5, f64::from(y) + 0.5);
             let mut counts = TestCounts::default();
-            (index.watch(&ray, Interval::POSITIVE, false, &mut counts), counts)
+            (index.watch(&Query::closest(ray, Interval::POSITIVE), &mut counts), counts)
         })
         .collect()
 }
@@ -90,7 +94,7 @@ pub fn make(effort: Effort) -> Finished {
         .iter()
         .filter(|structure| structure.name != "linear")
         .map(|structure| {
-            let built = (structure.build)(&scene);
+            let built = structure.build(&scene);
             Map::of(structure.name, &watch(&scene, size, &*built.index), &expected)
         })
         .collect();

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use glam::{DVec2, DVec3};
 use lancer_accel::{BspTree, Cell, Grid, KdBuilder, OctreeBuilder};
 use lancer_core::geometry::{Bounds3, Interval, Ray};
-use lancer_core::intersector::{Hit, LinearScan, Observable, TestCounts, Traversal};
+use lancer_core::intersector::{Hit, Intersector, LinearScan, Query, TestCounts};
 use lancer_core::sampling::Uniform;
 use lancer_core::scene::{MaterialId, Mesh, PrimitiveId, Scene};
 use lancer_figure::{
@@ -73,8 +73,8 @@ impl Fan {
     }
 }
 
-fn watch(index: &dyn Observable, ray: &Ray, counts: &mut TestCounts) -> Option<Hit> {
-    index.watch(ray, Interval::POSITIVE, false, counts)
+fn watch(index: &dyn Intersector, ray: &Ray, counts: &mut TestCounts) -> Option<Hit> {
+    index.watch(&Query::closest(*ray, Interval::POSITIVE), counts)
 }
 
 /// Upright triangles that show as walls in the plan: a block of small ones in a corner, a few large ones.
@@ -160,9 +160,9 @@ fn outlines(tree: &BspTree, bounds: Bounds3, steps: u32) -> BTreeMap<usize, Regi
         .collect()
 }
 
-fn drawn<I: Traversal>(
+fn drawn(
     name: &'static str,
-    index: &I,
+    index: &dyn Intersector,
     fan: &Fan,
     [regions, visited]: [Vec<Region>; 2],
 ) -> Drawn {

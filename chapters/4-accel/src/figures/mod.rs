@@ -51,7 +51,7 @@ fn is_off(t: Option<f32>, truth: Option<Hit>) -> bool {
 
 /// A scene without light, the lighter the more it faces the eye.
 fn shaded(scene: &Scene, camera: Camera, size: ImageSize) -> Picture {
-    let index = (structure("bvh").build)(scene).index;
+    let index = structure("bvh").build(scene).index;
     let seen = Scene { camera, ..scene.clone() };
     let radiance = |ray: &Ray, _: &mut u32| {
         let facing = |hit: Hit| {

@@ -2,7 +2,7 @@
 
 use lancer_accel::Bvh;
 use lancer_core::image::ImageSize;
-use lancer_core::intersector::{LinearScan, Observable};
+use lancer_core::intersector::{Intersector, LinearScan};
 use lancer_figure::{
     Axis, Chart, Effort, Finished, Plate, Row, Series, Table, method_color, number, time_in_turn,
 };
@@ -114,7 +114,7 @@ fn of<'c>(cases: &'c [Case], family: &'c str, index: &'c str) -> impl Iterator<I
 fn cases_of(family_name: &'static str, count: u32, size: ImageSize, runs: usize) -> [Case; 2] {
     let scene = family(family_name).scene(count);
     let (linear, tree) = (LinearScan::new(&scene), Bvh::build(&scene));
-    let indexes: [&dyn Observable; 2] = [&linear, &tree];
+    let indexes: [&dyn Intersector; 2] = [&linear, &tree];
     let rays = Rays::of(&scene, size, &tree).into_iter().find(|rays| rays.kind == Kind::Primary);
     let rays = rays.expect("all kinds");
     let asked = rays.queries.len() as f64;

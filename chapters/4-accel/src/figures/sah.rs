@@ -3,7 +3,7 @@
 use lancer_accel::{BinaryTree, Split};
 use lancer_core::geometry::Interval;
 use lancer_core::image::ImageSize;
-use lancer_core::intersector::{TestCounts, Traversal};
+use lancer_core::intersector::{Query, TestCounts, Traversal};
 use lancer_figure::{
     Axis, Chart, Effort, Finished, Plate, Row, Series, Table, category_color, number,
 };
@@ -124,14 +124,14 @@ fn case_of(
         // Beyond all hits: none counts, so nothing stops the line.
         let nowhere = Interval { min: f64::MAX, max: f64::INFINITY };
         work.add(&tree, |tree, counts| {
-            tree.walk(&line, nowhere, false, counts);
+            tree.walk(&Query::closest(line, nowhere), counts);
         });
     }
     let mut of_rays = Work::default();
     for rays in Rays::of(&scene, size, &tree) {
         for query in &rays.queries {
             of_rays.add(&tree, |tree, counts| {
-                tree.walk(&query.ray, query.range, rays.kind.any(), counts);
+                tree.walk(query, counts);
             });
         }
     }

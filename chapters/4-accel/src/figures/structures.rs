@@ -71,7 +71,7 @@ fn measure(family: Family, count: u32, size: ImageSize, runs: usize) -> Vec<Case
     let scene = family.scene(count);
     let structures: Vec<Structure> =
         STRUCTURES.into_iter().filter(|structure| takes(structure, count)).collect();
-    let built = time_in_turn(1, structures.iter().map(|structure| || (structure.build)(&scene)));
+    let built = time_in_turn(1, structures.iter().map(|structure| || structure.build(&scene)));
 
     let rays = Rays::of(&scene, size, &*built.last().expect("an index").1.index);
     let count_of_rays = rays.iter().map(|rays| rays.queries.len()).sum();

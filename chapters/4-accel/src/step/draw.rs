@@ -3,7 +3,7 @@
 use glam::DVec3;
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
 use lancer_core::intersector::Hit;
-use lancer_core::scene::{PrimitiveId, Scene};
+use lancer_core::scene::{PrimitiveId, Scene, Shape};
 use lancer_figure::{
     Backdrop, Color, FAINT, INK, LABEL, MUTED, Pen, Point, Stroke, Style, Text, category_color,
 };
@@ -148,15 +148,16 @@ pub fn primitives(
     which: &[PrimitiveId],
     color: Color,
 ) -> impl Fn(&mut Pen<'_>) + use<> {
-    let triangles = scene.mesh.triangles.len();
     let (mut polygons, mut discs) = (Vec::new(), Vec::new());
-    for primitive in which.iter().step_by(which.len().div_ceil(MOST_SHAPES).max(1)) {
-        let index = primitive.0 as usize;
-        if index < triangles {
-            polygons.push(scene.mesh.corners(index).map(|p: DVec3| view.side.flat(p)));
-        } else {
-            let sphere = scene.spheres[index - triangles].shape;
-            discs.push((view.side.flat(sphere.center), sphere.radius));
+    for &primitive in which.iter().step_by(which.len().div_ceil(MOST_SHAPES).max(1)) {
+        match scene.shape(primitive) {
+            Shape::Triangle(index) => {
+                polygons.push(scene.mesh.corners(index).map(|p: DVec3| view.side.flat(p)));
+            }
+            Shape::Sphere(index) => {
+                let sphere = scene.spheres[index].shape;
+                discs.push((view.side.flat(sphere.center), sphere.radius));
+            }
         }
     }
     move |pen| {

@@ -9,9 +9,9 @@ pub mod record;
 use glam::DVec2;
 use lancer_accel::Bvh;
 use lancer_core::geometry::{Bounds3, Interval, Ray};
-use lancer_core::intersector::{Hit, Intersector, LinearScan, TestCounts};
+use lancer_core::intersector::{Hit, Intersector, LinearScan, Query, TestCounts};
 use lancer_core::method::Setting;
-use lancer_core::scene::{PrimitiveId, Scene};
+use lancer_core::scene::{PrimitiveId, Scene, Shape};
 use lancer_core::world::World;
 use lancer_exercise::Shown;
 use lancer_figure::{Backdrop, INK, MUTED, Step, Tree, Walk, category_color, method_color};
@@ -135,12 +135,12 @@ impl Walker<'_> {
     /// The steps through one index, as the `call`-th call.
     fn search(&mut self, structure: &Structure, call: usize) -> Answer {
         let (scene, ray, name) = (self.scene, self.ray, structure.name);
-        let built = (structure.build)(scene);
+        let built = structure.build(scene);
         let step = |happens: &str| Step::new(call, 1, format!("{name} {happens}"));
         let begins = step(&format!("begins, {} bytes beside the scene", built.bytes));
         self.steps.push(begins.opens().clears());
         let mut recorder = Recorder::new(scene, &ray, Interval::POSITIVE);
-        let hit = built.index.watch(&ray, Interval::POSITIVE, false, &mut recorder);
+        let hit = built.index.watch(&Query::closest(ray, Interval::POSITIVE), &mut recorder);
         let Recorder { events, counts, .. } = recorder;
         for Event { kind, best } in &events {
             let step = self.event(kind, *best, &step);
@@ -280,17 +280,16 @@ impl Walker<'_> {
 
     /// What a primitive is called.
     fn named(&self, primitive: PrimitiveId) -> String {
-        let triangles = self.scene.mesh.triangles.len();
-        match (primitive.0 as usize).checked_sub(triangles) {
-            None => format!("triangle {}", primitive.0),
-            Some(sphere) => format!("sphere {sphere}"),
+        match self.scene.shape(primitive) {
+            Shape::Triangle(index) => format!("triangle {index}"),
+            Shape::Sphere(index) => format!("sphere {index}"),
         }
     }
 
     /// How many there are of what.
     fn counted(&self, primitives: &[PrimitiveId]) -> String {
-        let triangles = self.scene.mesh.triangles.len();
-        let spheres = primitives.iter().filter(|p| p.0 as usize >= triangles).count();
+        let is_sphere = |&&p: &&PrimitiveId| matches!(self.scene.shape(p), Shape::Sphere(_));
+        let spheres = primitives.iter().filter(is_sphere).count();
         let what = match spheres {
             0 => "triangles",
             all if all == primitives.len() => "spheres",

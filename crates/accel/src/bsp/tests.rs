@@ -12,7 +12,7 @@ fn leaves(tree: &BspTree) -> usize {
 fn trees_over_hard_scenes_are_valid() {
     for (name, scene) in hard::scenes() {
         let tree = BspTree::build(&scene);
-        tree.validate().unwrap_or_else(|error| panic!("{name}: {error}"));
+        tree.validate(&scene).unwrap_or_else(|error| panic!("{name}: {error}"));
         let limit = REFERENCES_PER_PRIMITIVE * scene.primitives().len();
         assert!(tree.primitives.len() <= limit, "{name}: {}", tree.primitives.len());
     }
@@ -42,7 +42,7 @@ fn a_convex_object_needs_planes_on_edges() {
     let scene = Scene::of_mesh(icosphere(3));
     let faces = BspBuilder { planes: Planes::Faces }.build(&scene);
     assert_eq!(leaves(&faces), 1);
-    faces.validate().unwrap();
+    faces.validate(&scene).unwrap();
     assert!(leaves(&BspTree::build(&scene)) > 300);
 }
 
@@ -55,7 +55,7 @@ fn what_lies_in_a_plane_stays_there() {
     }
     let scene = Scene::of_mesh(mesh);
     let (tree, oracle) = (BspTree::build(&scene), LinearScan::new(&scene));
-    tree.validate().unwrap();
+    tree.validate(&scene).unwrap();
     let within = |node: &Node| matches!(node, Node::Inner { count, .. } if *count > 100);
     assert!(tree.nodes.iter().any(within));
     let mut point = hard::points(47);

@@ -6,9 +6,9 @@ pub(crate) use grow::MAX_DEPTH;
 pub use grow::split_at_median;
 
 use glam::Vec3A;
-use lancer_core::geometry::{ConvexVolume, Interval, Ray};
-use lancer_core::intersector::{BeamTraversal, Hit, Observer, Traversal};
-use lancer_core::scene::{PrimitiveId, Scene};
+use lancer_core::geometry::ConvexVolume;
+use lancer_core::intersector::{BeamIndex, BeamTraversal, Hit, Observer, Query, Traversal};
+use lancer_core::scene::{PrimitiveId, Subset};
 use rayon::prelude::*;
 
 use crate::binary_tree::{BinaryTree, TreeStatistics};
@@ -50,14 +50,14 @@ pub enum Split {
 pub struct Bvh<'s>(FourWide<'s>);
 
 impl<'s> Bvh<'s> {
-    /// Builds the tree over all primitives of the scene by the surface area heuristic.
-    pub fn build(scene: &'s Scene) -> Self {
-        Self::with_split(scene, Split::default())
+    /// Builds the tree by the surface area heuristic.
+    pub fn build(primitives: impl Into<Subset<'s>>) -> Self {
+        Self::with_split(primitives, Split::default())
     }
 
     /// Builds the tree by a split rule of choice.
-    pub fn with_split(scene: &'s Scene, split: Split) -> Self {
-        Self(FourWide::of(BinaryTree::build(scene, split)))
+    pub fn with_split(primitives: impl Into<Subset<'s>>, split: Split) -> Self {
+        Self(FourWide::of(BinaryTree::build(primitives, split)))
     }
 
     /// Bytes held by the index, without the scene it borrows.
@@ -70,11 +70,11 @@ impl<'s> Bvh<'s> {
         self.0.statistics()
     }
 
-    /// Checks that every box contains what is below it, that every primitive is in one leaf, and that
-    /// the tree is not too deep.
-    pub fn validate(&self) -> Result<(), String> {
+    /// Checks that every box contains what is below it, that every one of these primitives is in one
+    /// leaf, and that the tree is not too deep.
+    pub fn validate<'p>(&self, primitives: impl Into<Subset<'p>>) -> Result<(), String> {
         grow::check_depth(self.statistics())?;
-        self.0.validate()
+        self.0.validate(primitives.into())
     }
 }
 
@@ -82,14 +82,12 @@ impl Traversal for Bvh<'_> {
     /// Visits the primitives whose boxes the ray meets, the leaves of a node before its other
     /// children and the nearest of those next, until any hit will do.
     #[inline]
-    fn walk<O: Observer>(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        observer: &mut O,
-    ) -> Option<Hit> {
-        self.0.walk(ray, range, any, observer)
+    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
+        self.0.walk(query, observer)
+    }
+
+    fn beams(&self) -> Option<&dyn BeamIndex> {
+        Some(self)
     }
 }
 
@@ -108,24 +106,24 @@ impl BeamTraversal for Bvh<'_> {
 }
 
 impl<'s> BinaryTree<'s> {
-    /// Builds the tree over all primitives of the scene. It is the same for any number of threads.
-    pub fn build(scene: &'s Scene, split: Split) -> Self {
-        Self::grown(scene, Rule { split, max_leaf: MAX_LEAF })
+    /// Builds the tree. It is the same for any number of threads.
+    pub fn build(primitives: impl Into<Subset<'s>>, split: Split) -> Self {
+        Self::grown(&primitives.into(), Rule { split, max_leaf: MAX_LEAF })
     }
 
     /// The tree by the surface area heuristic down to single primitives, to be collapsed.
-    pub(crate) fn of_single_primitives(scene: &'s Scene) -> Self {
-        Self::grown(scene, Rule { split: Split::Sah, max_leaf: 1 })
+    pub(crate) fn of_single_primitives(primitives: &Subset<'s>) -> Self {
+        Self::grown(primitives, Rule { split: Split::Sah, max_leaf: 1 })
     }
 
-    fn grown(scene: &'s Scene, rule: Rule) -> Self {
-        let frame = Frame::of(scene.bounds());
-        let item = |id| {
-            let primitive = PrimitiveId(id);
+    fn grown(primitives: &Subset<'s>, rule: Rule) -> Self {
+        let scene = primitives.scene();
+        let frame = Frame::of(primitives.bounds());
+        let item = |place| {
+            let primitive = primitives.get(place);
             Item { bounds: frame.outwards(scene.primitive_bounds(primitive)), primitive }
         };
-        let mut items: Vec<Item> =
-            (0..scene.primitives().len() as u32).into_par_iter().map(item).collect();
+        let mut items: Vec<Item> = (0..primitives.len()).into_par_iter().map(item).collect();
         let nodes = grow::tree(&mut items, rule);
         let primitives = items.iter().map(|item| item.primitive).collect();
         Self { scene, frame, nodes, primitives }
@@ -151,7 +149,9 @@ impl Item {
 mod tests {
     use glam::{DAffine3, DVec3};
     use lancer_core::generate::icosphere;
+    use lancer_core::geometry::{Interval, Ray};
     use lancer_core::intersector::TestCounts;
+    use lancer_core::scene::Scene;
 
     use super::*;
     use crate::hard_sets::{hard_sets, triangles};
@@ -162,9 +162,13 @@ mod tests {
     fn hard_sets_are_built() {
         for (name, scene) in &hard_sets(100_000) {
             for split in SPLITS {
-                let valid = BinaryTree::build(scene, split).validate();
+                let valid = BinaryTree::build(scene, split).validate(scene);
                 assert_eq!(valid, Ok(()), "{name}, {split:?}");
-                assert_eq!(Bvh::with_split(scene, split).validate(), Ok(()), "{name}, {split:?}");
+                assert_eq!(
+                    Bvh::with_split(scene, split).validate(scene),
+                    Ok(()),
+                    "{name}, {split:?}"
+                );
             }
         }
     }
@@ -175,7 +179,10 @@ mod tests {
         let broken = |harm: &dyn Fn(&mut BinaryTree)| {
             let mut tree = BinaryTree::build(&scene, Split::Sah);
             harm(&mut tree);
-            [tree.validate().unwrap_err(), FourWide::of(tree).validate().unwrap_err()]
+            [
+                tree.validate(&scene).unwrap_err(),
+                FourWide::of(tree).validate((&scene).into()).unwrap_err(),
+            ]
         };
         let pair = |tree: &BinaryTree| tree.nodes.iter().position(|node| node.count > 1).unwrap();
         let small = broken(&|tree| {
@@ -239,7 +246,9 @@ mod tests {
                 let turn = f64::from(k) * 2.4;
                 let origin = 3.0 * DVec3::new(turn.cos(), turn.sin(), f64::from(k) / 1000.0);
                 let ray = Ray::new(origin, 0.3 * DVec3::new(turn.sin(), 0.0, turn.cos()) - origin);
-                assert!(index.walk(&ray, Interval::POSITIVE, false, &mut counts).is_some());
+                assert!(
+                    index.walk(&Query::closest(ray, Interval::POSITIVE), &mut counts).is_some()
+                );
             }
             (index.statistics().sah_cost, counts.boxes + counts.primitives)
         });

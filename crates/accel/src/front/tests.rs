@@ -1,10 +1,10 @@
 use std::collections::BTreeSet;
 
 use glam::DVec3;
-use lancer_core::generate::icosphere;
+use lancer_core::generate::{icosphere, sphere_flake};
 use lancer_core::geometry::{Bounds3, ConvexVolume, Interval, Ray, Sphere};
 use lancer_core::intersector::{BeamIndex, Intersector, LinearScan, TestCounts};
-use lancer_core::scene::{MaterialId, PrimitiveId, Scene, SphereObject};
+use lancer_core::scene::{MaterialId, PrimitiveId, Scene, Shape, SphereObject, Subset};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 
@@ -20,12 +20,13 @@ struct Indexes<'s> {
 }
 
 impl<'s> Indexes<'s> {
-    fn build(scene: &'s Scene) -> Self {
+    fn build(primitives: impl Into<Subset<'s>>) -> Self {
+        let all = primitives.into();
         Self {
-            linear: LinearScan::new(scene),
-            bvh: Bvh::build(scene),
-            wide: Wide::build(scene),
-            grid: Grid::build(scene),
+            linear: LinearScan::new(all.clone()),
+            bvh: Bvh::build(all.clone()),
+            wide: Wide::build(all.clone()),
+            grid: Grid::build(all),
         }
     }
 }
@@ -49,12 +50,11 @@ fn set(found: &[PrimitiveId]) -> BTreeSet<PrimitiveId> {
 fn extent(scene: &Scene, volume: &ConvexVolume, primitive: PrimitiveId) -> [f64; 2] {
     let Ray { origin, direction } = volume.axis();
     let Bounds3 { min, max } = scene.primitive_bounds(primitive);
-    let corners = if (primitive.0 as usize) < scene.mesh.triangles.len() {
-        scene.mesh.corners(primitive.0 as usize).to_vec()
-    } else {
-        (0..8)
+    let corners = match scene.shape(primitive) {
+        Shape::Triangle(index) => scene.mesh.corners(index).to_vec(),
+        Shape::Sphere(_) => (0..8)
             .map(|k| DVec3::from_array([0, 1, 2].map(|axis| [min, max][k >> axis & 1][axis])))
-            .collect()
+            .collect(),
     };
     let depths = corners.iter().map(|&corner| direction.dot(corner - origin));
     [depths.clone().fold(f64::INFINITY, f64::min), depths.fold(f64::NEG_INFINITY, f64::max)]
@@ -228,8 +228,8 @@ fn beams(scene: &Scene, count: u32) -> Vec<(ConvexVolume, Vec<Ray>)> {
 }
 
 /// What a ray in the beam hits is in the beam: the truth is another algorithm's.
-fn rays_are_in_beams(name: &str, scene: &Scene, count: u32) -> usize {
-    let indexes = Indexes::build(scene);
+fn rays_are_in_beams(name: &str, primitives: &Subset, count: u32) -> usize {
+    let (scene, indexes) = (primitives.scene(), Indexes::build(primitives.clone()));
     let size = (scene.bounds().max - scene.bounds().min).max_element();
     let mut hits = 0;
     for (volume, rays) in beams(scene, count) {
@@ -254,7 +254,8 @@ fn rays_are_in_beams(name: &str, scene: &Scene, count: u32) -> usize {
 #[test]
 fn hard_sets_are_searched() {
     let sets = hard_sets(1000);
-    let hits: usize = sets.iter().map(|(name, scene)| rays_are_in_beams(name, scene, 42)).sum();
+    let hits: usize =
+        sets.iter().map(|(name, scene)| rays_are_in_beams(name, &scene.into(), 42)).sum();
     assert!(hits > 500, "{hits}");
     let (_, empty) = &sets[0];
     let everywhere = ConvexVolume::of_half_spaces(Ray::new(DVec3::ZERO, DVec3::X), []);
@@ -271,8 +272,32 @@ fn spheres_are_found() {
         let shape = Sphere { center, radius: f64::from(k % 5) * 0.1 };
         scene.spheres.push(SphereObject { shape, material: MaterialId(0) });
     }
-    let hits = rays_are_in_beams("spheres", &scene, 300);
+    let hits = rays_are_in_beams("spheres", &(&scene).into(), 300);
     assert!(hits > 500, "{hits}");
+}
+
+/// Over a subset a beam finds what of all it finds is in the subset.
+#[test]
+fn a_subset_is_searched() {
+    let mut scene = Scene::of_mesh(icosphere(2));
+    scene.spheres = sphere_flake(2, MaterialId(0));
+    let (whole, nothing) = (LinearScan::new(&scene), Indexes::build(scene.subset([])));
+    let [mut hits, mut left_out] = [0; 2];
+    for step in [1, 3, 50, usize::MAX] {
+        let some = scene.subset(scene.primitives().skip(1).step_by(step));
+        hits += rays_are_in_beams("some", &some, 60);
+        let indexes = Indexes::build(some.clone());
+        for (volume, _) in beams(&scene, 60) {
+            let mut wanted = found(&whole, &volume, f64::INFINITY);
+            let of_all = wanted.len();
+            wanted.retain(|&primitive| some.place(primitive).is_some());
+            left_out += of_all - wanted.len();
+            let [all, _] = agree(&scene, &indexes, &volume, f64::INFINITY);
+            assert_eq!(all, set(&wanted));
+            assert!(agree(&scene, &nothing, &volume, f64::INFINITY).iter().all(BTreeSet::is_empty));
+        }
+    }
+    assert!(hits > 500 && left_out > 5_000, "{hits} {left_out}");
 }
 
 /// A visitor that has seen enough ends the search: both halves of a sphere, or its front only.

@@ -20,7 +20,7 @@ fn rays(count: usize) -> impl Iterator<Item = Ray> {
 fn trees_over_hard_scenes_are_valid() {
     for (name, scene) in hard::scenes() {
         let tree = KdTree::build(&scene);
-        tree.validate().unwrap_or_else(|error| panic!("{name}: {error}"));
+        tree.validate(&scene).unwrap_or_else(|error| panic!("{name}: {error}"));
         let limit = REFERENCES_PER_PRIMITIVE * scene.primitives().len();
         assert!(tree.primitives.len() <= limit, "{name}: {}", tree.primitives.len());
     }
@@ -124,10 +124,10 @@ fn clipping_spares_tests() {
     let scene = Scene::of_mesh(hard::soup(2000, 0.5));
     let boxes = KdBuilder { perfect_splits: false, ..KdBuilder::default() };
     let [clipped, boxed] = [KdTree::build(&scene), boxes.build(&scene)].map(|tree| {
-        tree.validate().unwrap();
+        tree.validate(&scene).unwrap();
         let mut counts = TestCounts::default();
         for ray in rays(1000) {
-            tree.walk(&ray, Interval::POSITIVE, false, &mut counts);
+            tree.walk(&Query::closest(ray, Interval::POSITIVE), &mut counts);
         }
         counts.primitives
     });

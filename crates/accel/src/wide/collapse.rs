@@ -1,7 +1,7 @@
 //! From a binary tree with one primitive per leaf to nodes of eight children and leaves of up to eight
 //! triangles.
 
-use lancer_core::scene::{PrimitiveId, Scene};
+use lancer_core::scene::{PrimitiveId, Scene, Shape};
 use rayon::prelude::*;
 use smallvec::SmallVec;
 
@@ -209,7 +209,7 @@ fn open(
 }
 
 fn has_spheres(scene: &Scene, primitives: &[PrimitiveId]) -> bool {
-    primitives.iter().any(|id| id.0 as usize >= scene.mesh.triangles.len())
+    primitives.iter().any(|&id| matches!(scene.shape(id), Shape::Sphere(_)))
 }
 
 /// Writes a leaf: see [`super::Wide`] for its words.

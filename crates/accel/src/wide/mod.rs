@@ -7,8 +7,10 @@ mod walk;
 
 use glam::DVec3;
 use lancer_core::geometry::{ConvexVolume, Interval, Ray};
-use lancer_core::intersector::{BeamTraversal, Hit, Intersector, Observable, Observer, Probe};
-use lancer_core::scene::{PrimitiveId, Scene};
+use lancer_core::intersector::{
+    BeamIndex, BeamTraversal, Hit, Intersector, Observer, Probe, Query, Wanted,
+};
+use lancer_core::scene::{PrimitiveId, Scene, Subset};
 
 use crate::binary_tree::{BinaryTree, Seen};
 use crate::four_boxes::{Frame, FrameBox};
@@ -203,14 +205,14 @@ impl Child {
 }
 
 impl<'s> Wide<'s> {
-    /// Builds the tree over all primitives of the scene.
-    pub fn build(scene: &'s Scene) -> Self {
-        Self::with_kernel(scene, Kernel::best())
+    /// Builds the tree.
+    pub fn build(primitives: impl Into<Subset<'s>>) -> Self {
+        Self::with_kernel(primitives.into(), Kernel::best())
     }
 
     /// The same without the processor's vectors: what other processors have.
-    pub fn scalar(scene: &'s Scene) -> Self {
-        Self::with_kernel(scene, Kernel::Scalar(Scalar))
+    pub fn scalar(primitives: impl Into<Subset<'s>>) -> Self {
+        Self::with_kernel(primitives.into(), Kernel::Scalar(Scalar))
     }
 
     /// Whether [`Wide::build`] makes use of vectors of this processor.
@@ -218,10 +220,10 @@ impl<'s> Wide<'s> {
         !matches!(Kernel::best(), Kernel::Scalar(_))
     }
 
-    fn with_kernel(scene: &'s Scene, kernel: Kernel) -> Self {
-        let tree = BinaryTree::of_single_primitives(scene);
+    fn with_kernel(primitives: Subset<'s>, kernel: Kernel) -> Self {
+        let tree = BinaryTree::of_single_primitives(&primitives);
         let collapse::Collapsed { nodes, leaves } = collapse::collapse(&tree);
-        Self { scene, frame: tree.frame, nodes, leaves, kernel }
+        Self { scene: tree.scene, frame: tree.frame, nodes, leaves, kernel }
     }
 
     /// Bytes held by the index, without the scene it borrows.
@@ -229,9 +231,9 @@ impl<'s> Wide<'s> {
         size_of_val(self.nodes.as_slice()) + size_of_val(self.leaves.as_slice())
     }
 
-    /// Checks that every box contains what is below it and that every primitive is in one leaf.
-    pub fn validate(&self) -> Result<(), String> {
-        let mut seen = Seen::new(self.scene);
+    /// Checks that every box contains what is below it and that every one of these primitives is in one leaf.
+    pub fn validate<'p>(&self, primitives: impl Into<Subset<'p>>) -> Result<(), String> {
+        let mut seen = Seen::new(primitives.into());
         let mut reached = 0;
         let mut pending = if self.nodes.is_empty() { Vec::new() } else { vec![(0, 0)] };
         while let Some((index, depth)) = pending.pop() {
@@ -400,22 +402,21 @@ impl Intersector for Wide<'_> {
     fn occluded(&self, ray: &Ray, range: Interval) -> bool {
         self.any(ray, range, &mut ()).is_some()
     }
-}
 
-impl Observable for Wide<'_> {
-    fn watch(
-        &self,
-        ray: &Ray,
-        range: Interval,
-        any: bool,
-        mut observer: &mut dyn Observer,
-    ) -> Option<Hit> {
-        if !any {
-            return self.closest(ray, range, &mut observer);
+    fn watch(&self, query: &Query, mut observer: &mut dyn Observer) -> Option<Hit> {
+        let &Query { ref ray, range, wanted } = query;
+        match wanted {
+            Wanted::Closest => self.closest(ray, range, &mut observer),
+            Wanted::Any => {
+                let mut probe = Probe::new(self.scene, ray, range);
+                probe.test(self.any(ray, range, &mut observer)?);
+                probe.best()
+            }
         }
-        let mut probe = Probe::new(self.scene, ray, range);
-        probe.test(self.any(ray, range, &mut observer)?);
-        probe.best()
+    }
+
+    fn beams(&self) -> Option<&dyn BeamIndex> {
+        Some(self)
     }
 }
 

@@ -22,7 +22,7 @@ fn kernels() -> Vec<Kernel> {
 #[test]
 fn hard_sets_are_built() {
     for (name, scene) in &hard_sets(100_000) {
-        assert_eq!(Wide::build(scene).validate(), Ok(()), "{name}");
+        assert_eq!(Wide::build(scene).validate(scene), Ok(()), "{name}");
     }
 }
 
@@ -31,9 +31,9 @@ fn a_validation_finds_what_is_wrong() {
     let scene = Scene::of_mesh(icosphere(3));
     let broken = |harm: &dyn Fn(&mut Wide)| {
         let mut wide = Wide::build(&scene);
-        assert_eq!(wide.validate(), Ok(()));
+        assert_eq!(wide.validate(&scene), Ok(()));
         harm(&mut wide);
-        wide.validate().unwrap_err()
+        wide.validate(&scene).unwrap_err()
     };
     let leaf = |wide: &Wide| {
         let node = wide.nodes.iter().position(|node| node.children[0].is_leaf()).unwrap();
@@ -113,7 +113,7 @@ fn the_bounds_hold() {
         let answer = probe.test(PrimitiveId(0)).then(|| probe.best().unwrap().t);
         met += u32::from(answer.is_some());
         for kernel in kernels() {
-            let wide = Wide::with_kernel(&scene, kernel);
+            let wide = Wide::with_kernel((&scene).into(), kernel);
             let filtered = match kernel {
                 #[cfg(target_arch = "x86_64")]
                 Kernel::Avx2(lanes) => filter_first(lanes, &wide, &ray),
@@ -162,10 +162,10 @@ fn filter_first<L: Lanes>(lanes: L, wide: &Wide, ray: &Ray) -> Option<(FourSlabs
 fn a_ray_in_the_open_asks_little() {
     let scene = Scene::of_mesh(icosphere(4));
     for kernel in kernels() {
-        let wide = Wide::with_kernel(&scene, kernel);
+        let wide = Wide::with_kernel((&scene).into(), kernel);
         let mut counts = TestCounts::default();
         let ray = Ray::new(DVec3::new(0.1, 0.2, 3.0), DVec3::NEG_Z);
-        assert!(wide.watch(&ray, Interval::POSITIVE, false, &mut counts).is_some());
+        assert!(wide.watch(&Query::closest(ray, Interval::POSITIVE), &mut counts).is_some());
         // Four levels of eight boxes, a leaf or two.
         assert!(counts.boxes <= 8 * 8 && counts.primitives <= 24, "{counts:?}");
     }
@@ -222,7 +222,7 @@ fn a_packet_answers_as_brute_force() {
                 let wanted: Vec<_> =
                     rays.iter().map(|ray| oracle.closest_hit(ray, range)).collect();
                 for kernel in kernels() {
-                    let wide = Wide::with_kernel(&scene, kernel);
+                    let wide = Wide::with_kernel((&scene).into(), kernel);
                     let mut got = vec![None; rays.len()];
                     wide.closest_hits(&rays, range, &mut got);
                     assert_eq!(difference(&got, &wanted), None, "{k} {kernel:?} {range:?}");

@@ -9,6 +9,7 @@ mod light;
 pub mod load;
 mod material;
 mod mesh;
+mod primitives;
 
 pub use camera::{Camera, PrimaryRays};
 pub use counts::Counts;
@@ -16,6 +17,7 @@ pub use framing::CameraError;
 pub use light::{AreaLight, PointLight, PointSource};
 pub use material::{Material, MaterialId, Pigment};
 pub use mesh::{Face, FaceId, Mesh, Triangle};
+pub use primitives::{PrimitiveId, Shape, Subset};
 
 use glam::DVec3;
 
@@ -74,7 +76,3 @@ impl Scene {
         &self.materials[id.0 as usize]
     }
 }
-
-/// One primitive of a scene: triangles are numbered first, in mesh order, then spheres.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct PrimitiveId(pub u32);
