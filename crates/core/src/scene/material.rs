@@ -49,6 +49,18 @@ impl Material {
         }
     }
 
+    /// The share of the light that a surface receives and sends back or lets pass, at most, of the channel with the
+    /// largest: ρ_d + 2 ρ_s/(n + 1) + k_s + k_t. The second term is the highlight's, (R·V)ⁿ over a hemisphere,
+    /// 2π/(n + 1), over the π of a matte surface.
+    pub fn largest_albedo(&self) -> f64 {
+        let rho_d = match self.rho_d {
+            Pigment::Solid(color) => color,
+            Pigment::Checker { even, odd, .. } => even.max(odd),
+        };
+        let highlight = 2.0 * self.rho_s / (self.shininess + 1.0);
+        (rho_d + highlight + self.k_s + self.k_t).max_element()
+    }
+
     /// Whether the material emits, so that a face of it is an area light.
     pub fn emits(&self) -> bool {
         self.emission != Rgb::ZERO

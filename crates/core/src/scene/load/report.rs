@@ -92,6 +92,14 @@ pub enum WarningKind {
     ZeroArea,
     /// Nothing in the scene shines.
     NoLight,
+    /// A material that sends back more light than it receives, so that the light between two of them grows
+    /// without end.
+    Amplifies {
+        /// Its name.
+        material: String,
+        /// The share that it sends back, as a decimal fraction.
+        sum: String,
+    },
 }
 
 impl fmt::Display for WarningKind {
@@ -112,6 +120,12 @@ impl fmt::Display for WarningKind {
             Self::SelfIntersecting => f.write_str("polygon crosses itself; split it to get the right area"),
             Self::NonPlanar => f.write_str("polygon is not planar; split it into triangles"),
             Self::ZeroArea => f.write_str("triangle of zero area (kept)"),
+            Self::Amplifies { material, sum } => write!(
+                f,
+                "material `{}` sends back {sum} times the light that it receives, by ρ_d + 2 ρ_s/(n + 1) + k_s + k_t; \
+                 keep the sum at 1 or below",
+                printable(material)
+            ),
             Self::NoLight => f.write_str(
                 "no light: the picture will be black; add a [[light]], a material with emission or an ambient",
             ),

@@ -69,7 +69,7 @@ pub(super) fn parse(
     if !scene.has_light() {
         warnings.add(name, None, WarningKind::NoLight);
     }
-    Ok(finish(scene, material_names, warnings))
+    Ok(finish(name, scene, material_names, warnings))
 }
 
 /// The text of a scene file, to name lines in it.

@@ -323,3 +323,28 @@ fn empty_and_dark_scenes() {
         "scenes/s.toml:2: unknown material `m`; no such name is defined",
     );
 }
+
+/// Sums by hand: 0.5 + 2 · 0.6/(3 + 1) + 0.2 + 0.1 = 1.1 in red alone, and 1.0099 or a mirror of 1 is silent.
+#[test]
+fn a_material_that_amplifies_is_warned_of_once() {
+    let warnings = |materials: &str| {
+        let text = format!(
+            "ambient = 1\n{materials}\n[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'a'\n"
+        );
+        let loaded = parse_scene(&text, "test", Path::new("")).unwrap();
+        loaded.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+    };
+    let loud =
+        "[material.a]\nrho_d = [0.5, 0.2, 0.2]\nrho_s = 0.6\nshininess = 3\nk_s = 0.2\nk_t = 0.1\n";
+    let expected = "test: material `a` sends back 1.10 times the light that it receives, by ρ_d + 2 ρ_s/(n + 1) + k_s \
+                    + k_t; keep the sum at 1 or below";
+    assert_eq!(warnings(loud), expected);
+    let two =
+        format!("{loud}[material.b]\nrho_d = {{ checker = [0.1, 0.9], side = 1 }}\nk_s = 0.2\n");
+    assert_eq!(warnings(&two), format!("{expected} (2 times, this is the first)"));
+    for silent in
+        ["rho_d = 0.5099\nk_t = 0.5", "k_s = 1", "rho_d = 1", "k_s = 0.1\nk_t = 0.9\nrho_d = 0"]
+    {
+        assert_eq!(warnings(&format!("[material.a]\n{silent}\n")), "", "{silent}");
+    }
+}
