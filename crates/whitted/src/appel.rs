@@ -50,6 +50,13 @@ impl<'a> Lighting<'a> {
 }
 
 /// The method of Appel (1968): what the eye sees and which lights see it too.
+///
+/// - *Follows* primary rays, and from what they meet a shadow ray to each light that would add something.
+/// - *Wins* where surfaces are matte: visibility without sorting, exact shadows of points, and a cost known
+///   beforehand, at most 1 + lights rays per sample.
+/// - *Loses* mirrors, glass, penumbrae (an area light is a point) and the light between surfaces.
+/// - *Sources*: Appel, *Some Techniques for Shading Machine Renderings of Solids*, AFIPS SJCC 1968; slides
+///   « Élimination des parties cachées », « Modèle Local ».
 #[derive(Clone)]
 pub struct Appel<'a> {
     lighting: Lighting<'a>,
