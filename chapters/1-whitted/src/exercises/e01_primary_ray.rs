@@ -92,11 +92,13 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                 through(camera, [forward, forward.cross(up).normalize(), up], size, x, y)
             };
         "forward × up is not made unit: camera.up need not be perpendicular to the view axis":
-            "a turned camera, by hand" catches
-                level(camera, forward(camera), forward(camera).cross(camera.up), size, x, y);
+            "a turned camera, by hand" catches {
+                let forward = forward(camera);
+                through(camera, level(forward, forward.cross(camera.up)), size, x, y)
+            };
         "look_at − eye is not made unit: right is, so the picture narrows with the distance of the point looked at":
             "another opening angle" catches
-                level(camera, camera.look_at - camera.eye, right(camera), size, x, y);
+                through(camera, level(camera.look_at - camera.eye, right(camera)), size, x, y);
         "the film is not at distance 1 but at that of look_at, though its size is not":
             "another opening angle" catches
                 zoomed(camera, tan_half(camera) / camera.look_at.distance(camera.eye), size, x, y);
@@ -155,9 +157,9 @@ fn squeezed(camera: &Camera, share: f64, size: ImageSize, x: f64, y: f64) -> Ray
     primary_ray(camera, size, middle + (x - middle) * share, y)
 }
 
-/// The ray through a film whose frame has another forward and right.
-fn level(camera: &Camera, forward: DVec3, right: DVec3, size: ImageSize, x: f64, y: f64) -> Ray {
-    through(camera, [forward, right, right.cross(forward)], size, x, y)
+/// The frame in which up is perpendicular to forward and right.
+fn level(forward: DVec3, right: DVec3) -> [DVec3; 3] {
+    [forward, right, right.cross(forward)]
 }
 
 /// The ray through a film with another frame: forward, right and up.

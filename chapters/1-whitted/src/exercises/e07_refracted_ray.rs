@@ -88,8 +88,11 @@ fn along(v: DVec3, n: DVec3, eta: f64, root: fn(f64) -> f64) -> DVec3 {
 const N: DVec3 = DVec3::new(2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0);
 const ALONG: DVec3 = DVec3::new(3.0 / 7.0, -6.0 / 7.0, 2.0 / 7.0);
 
+/// Its sine and its cosine.
+type Angle = (f64, f64);
+
 /// The unit direction that leaves the normal's side at an angle to −N.
-fn down(sin: f64, cos: f64) -> DVec3 {
+fn down((sin, cos): Angle) -> DVec3 {
     sin * ALONG - cos * N
 }
 
@@ -109,17 +112,11 @@ fn case(v: DVec3, n: DVec3, n1: f64, n2: f64) -> String {
     )
 }
 
-fn compare(
-    subject: &Subject,
-    (sin1, cos1): (f64, f64),
-    n1: f64,
-    n2: f64,
-    wanted: Option<(f64, f64)>,
-) -> Verdict {
-    let v = down(sin1, cos1);
+fn compare(subject: &Subject, angle: Angle, n1: f64, n2: f64, wanted: Option<Angle>) -> Verdict {
+    let v = down(angle);
     let got = (subject.refracted_ray)(v, N, n1, n2);
     let note = if wanted.is_none() { "; None is total reflection" } else { "" };
-    within(1e-10, || case(v, N, n1, n2) + note, &got, &wanted.map(|(sin, cos)| down(sin, cos)))
+    within(1e-10, || case(v, N, n1, n2) + note, &got, &wanted.map(down))
 }
 
 fn straight_on(subject: &Subject) -> Verdict {

@@ -115,12 +115,7 @@ fn counts_shown(counts: &RayCounts) -> String {
     format!("primary {primary}, mirror {mirror}, refracted {refracted}, shadow {shadow}")
 }
 
-fn compare_counts(
-    subject: &Subject,
-    case: impl Into<String>,
-    tree: &Node,
-    wanted: &RayCounts,
-) -> Verdict {
+fn compare_counts(subject: &Subject, case: String, tree: &Node, wanted: &RayCounts) -> Verdict {
     let got = (subject.count_rays)(tree);
     ensure(got == *wanted, || Mismatch::new(case, counts_shown(&got), counts_shown(wanted)))
 }
@@ -253,7 +248,7 @@ fn full_tree(subject: &Subject) -> Verdict {
     within(0.0, case, &(nodes, leaves), &(63, 64))?;
     let wanted = RayCounts { primary: 1, mirror: 31, refracted: 31, shadow: 0 };
     let case = "count_rays of this tree, half of whose calls are mirror rays";
-    compare_counts(subject, case, &tree, &wanted)
+    compare_counts(subject, case.to_owned(), &tree, &wanted)
 }
 
 const MAX_DEPTH: u32 = 5;

@@ -88,13 +88,8 @@ fn channels(pixels: &[Rgb]) -> f64 {
     (3 * pixels.len()) as f64
 }
 
-fn compare(
-    subject: &Subject,
-    film: &Film,
-    text: &str,
-    [x, y, n]: [u32; 3],
-    wanted: Rgb,
-) -> Verdict {
+fn compare(subject: &Subject, film: &Film, text: &str, xyn: [u32; 3], wanted: Rgb) -> Verdict {
+    let [x, y, n] = xyn;
     let case = || format!("pixel ({x}, {y}), n = {n}, radiance(x, y) = {text}");
     within(1e-12, case, &(subject.pixel_mean)(film, x, y, n), &wanted)
 }

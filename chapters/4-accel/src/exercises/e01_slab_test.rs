@@ -127,14 +127,9 @@ fn case(bounds: &Bounds3, ray: &Ray, range: Interval) -> String {
     )
 }
 
-fn compare(
-    subject: &Subject,
-    origin: [f64; 3],
-    direction: [f64; 3],
-    range: Interval,
-    wanted: Option<f64>,
-) -> Verdict {
-    let ray = Ray::new(origin.into(), direction.into());
+fn compare(subject: &Subject, ray: [[f64; 3]; 2], range: Interval, wanted: Option<f64>) -> Verdict {
+    let [origin, direction] = ray.map(DVec3::from);
+    let ray = Ray::new(origin, direction);
     let got = (subject.slab_test)(&BOX, &ray, range);
     within(1e-9, || case(&BOX, &ray, range), &got, &wanted)
 }
@@ -143,45 +138,45 @@ const POSITIVE: Interval = Interval::POSITIVE;
 
 /// The planes are reached at t = 1.5, 1 and 1.75, and left at 2.5, 4 and 2.75.
 fn front(subject: &Subject) -> Verdict {
-    compare(subject, [-1.0, -3.0, -4.0], [2.0, 2.0, 4.0], POSITIVE, Some(1.75))
+    compare(subject, [[-1.0, -3.0, -4.0], [2.0, 2.0, 4.0]], POSITIVE, Some(1.75))
 }
 
 /// x is left at t = 2.5, before z is reached at 3.5.
 fn past(subject: &Subject) -> Verdict {
-    compare(subject, [-1.0, -3.0, -4.0], [2.0, 2.0, 2.0], POSITIVE, None)
+    compare(subject, [[-1.0, -3.0, -4.0], [2.0, 2.0, 2.0]], POSITIVE, None)
 }
 
 /// The larger planes are reached at t = 1.5, 1 and 0.8, the smaller ones left at 2.5, 4 and 1.6.
 fn against(subject: &Subject) -> Verdict {
-    compare(subject, [7.0, 7.0, 11.0], [-2.0, -2.0, -5.0], POSITIVE, Some(1.5))?;
-    compare(subject, [7.0, 7.0, 11.0], [-2.0, -2.0, -8.0], POSITIVE, None)
+    compare(subject, [[7.0, 7.0, 11.0], [-2.0, -2.0, -5.0]], POSITIVE, Some(1.5))?;
+    compare(subject, [[7.0, 7.0, 11.0], [-2.0, -2.0, -8.0]], POSITIVE, None)
 }
 
 fn inside(subject: &Subject) -> Verdict {
-    compare(subject, [3.0, 1.0, 5.0], [1.0, -2.0, 0.5], POSITIVE, Some(0.0))?;
+    compare(subject, [[3.0, 1.0, 5.0], [1.0, -2.0, 0.5]], POSITIVE, Some(0.0))?;
     let later = Interval { min: 0.25, max: 9.0 };
-    compare(subject, [3.0, 1.0, 5.0], [1.0, -2.0, 0.5], later, Some(0.25))
+    compare(subject, [[3.0, 1.0, 5.0], [1.0, -2.0, 0.5]], later, Some(0.25))
 }
 
 fn out_of_range(subject: &Subject) -> Verdict {
-    compare(subject, [5.0, 7.0, 9.0], [1.0, 2.0, 1.5], POSITIVE, None)?;
+    compare(subject, [[5.0, 7.0, 9.0], [1.0, 2.0, 1.5]], POSITIVE, None)?;
     let short = Interval::up_to(1.5);
-    compare(subject, [-1.0, -3.0, -4.0], [2.0, 2.0, 4.0], short, None)
+    compare(subject, [[-1.0, -3.0, -4.0], [2.0, 2.0, 4.0]], short, None)
 }
 
 fn parallel(subject: &Subject) -> Verdict {
     for zero in [0.0, -0.0] {
-        compare(subject, [5.0, 1.0, 1.0], [zero, 0.5, 1.0], POSITIVE, None)?;
-        compare(subject, [1.0, 1.0, 1.0], [zero, 0.5, 1.0], POSITIVE, None)?;
-        compare(subject, [3.0, 1.0, 1.0], [zero, 0.5, 1.0], POSITIVE, Some(2.0))?;
+        compare(subject, [[5.0, 1.0, 1.0], [zero, 0.5, 1.0]], POSITIVE, None)?;
+        compare(subject, [[1.0, 1.0, 1.0], [zero, 0.5, 1.0]], POSITIVE, None)?;
+        compare(subject, [[3.0, 1.0, 1.0], [zero, 0.5, 1.0]], POSITIVE, Some(2.0))?;
     }
     Ok(())
 }
 
 fn in_a_face(subject: &Subject) -> Verdict {
     for zero in [0.0, -0.0] {
-        compare(subject, [2.0, 1.0, 1.0], [zero, 0.5, 1.0], POSITIVE, Some(2.0))?;
-        compare(subject, [4.0, 1.0, 1.0], [zero, 0.5, 1.0], POSITIVE, Some(2.0))?;
+        compare(subject, [[2.0, 1.0, 1.0], [zero, 0.5, 1.0]], POSITIVE, Some(2.0))?;
+        compare(subject, [[4.0, 1.0, 1.0], [zero, 0.5, 1.0]], POSITIVE, Some(2.0))?;
     }
     Ok(())
 }

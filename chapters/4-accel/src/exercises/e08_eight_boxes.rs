@@ -174,13 +174,10 @@ fn judge_near(case: impl Fn() -> String, got: f32, wanted: f64) -> Verdict {
     Err(Mismatch::new(case() + ": t", got.shown(), text))
 }
 
-fn compare(
-    subject: &Subject,
-    boxes: &Boxes,
-    ray: &Ray,
-    max: f32,
-    wanted: [Option<f64>; 8],
-) -> Verdict {
+/// Where each box is entered, if it is.
+type Entries = [Option<f64>; 8];
+
+fn compare(subject: &Subject, boxes: &Boxes, ray: &Ray, max: f32, wanted: Entries) -> Verdict {
     let (near, met) = (subject.eight_boxes)(&rows(boxes), &PreparedRay::new(ray), max);
     (0..8).try_for_each(|lane| {
         let case = || case(lane, boxes, ray, max);
@@ -190,7 +187,7 @@ fn compare(
 }
 
 /// Eight boxes and a ray; it enters them by x, y or z, or leaves one slab before it is in another.
-fn scattered() -> (Boxes, Ray, [Option<f64>; 8]) {
+fn scattered() -> (Boxes, Ray, Entries) {
     let boxes = [
         bounds([0.0, -0.75, -1.0], [0.25, 0.0, 1.0]),
         bounds([-1.0, -0.25, -1.0], [1.0, 0.5, 1.0]),
