@@ -49,8 +49,10 @@ pub fn scenes_in_words() -> String {
             .iter()
             .map(|(variants, names)| format!("one of {} with {variants}", list(names, "and"))),
     );
-    let parts: Vec<&str> = parts.iter().map(String::as_str).collect();
-    list(&parts, "or")
+    match parts.split_last() {
+        Some((last, first)) if !first.is_empty() => format!("{}, or {last}", first.join(", ")),
+        _ => parts.concat(),
+    }
 }
 
 /// `a, b and c`.

@@ -33,7 +33,7 @@ pub struct Args {
     scene: String,
     #[arg(long, default_value = "whitted", help = methods_in_words())]
     method: String,
-    #[arg(long, default_value = "wide", help = format!("{}: the same picture in another time", indexes()))]
+    #[arg(long, default_value = "wide", help = format!("{} (linear asks every primitive for every ray): the same picture in another time", indexes()))]
     index: String,
     /// Pixels across and down
     #[arg(long, default_value = "512x512", value_name = "WxH", allow_hyphen_values = true)]

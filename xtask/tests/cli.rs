@@ -147,6 +147,9 @@ fn wrong_options_are_refused_with_a_cure() {
         ["--exposure", "bright"],
         ["--method", "witted"],
         ["--index", "linaer"],
+        ["--also", "samples"],
+        ["--also", "smples=new.exr"],
+        ["--also", "samples=new.jpg"],
     ]), @r"
     error: invalid value '1,2,3' for '--light <X,Y,Z,INTENSITY>': 4 numbers separated by commas are wanted, 3 are given
     error: --light: an intensity is negative; the fourth number must be at least 0
@@ -156,7 +159,52 @@ fn wrong_options_are_refused_with_a_cure() {
     error: invalid value 'bright' for '--exposure <EV>': `bright` is not a number; write one such as -1.5
     error: unknown method `witted`; known: whitted, appel
     error: unknown index `linaer`; known: linear, wide, octree, bvh, grid, kd, bsp, obvhs-bvh2, obvhs-cwbvh
+    error: invalid value 'samples' for '--also <NAME=FILE>': write NAME=FILE, such as samples=samples.exr
+    error: unknown by-product of whitted `smples`; known: samples
+    error: --also: what kind of picture is `new.jpg`? Its name must end in .png (sRGB) or .exr (linear)
     ");
+}
+
+/// One line for each flag without effect, and one for all that the method leaves out of the scene.
+#[test]
+fn what_has_no_effect_is_warned_of() {
+    let folder = folder(&[]);
+    let warnings = |line: &[&str]| text(&accepted(&folder, line).stderr);
+    let render = |scene, options: &[&'static str]| {
+        warnings(&[&["render", scene, "--size=8x8", "--out=new.png"], options].concat())
+    };
+    assert_snapshot!(render("room", &["--method=appel", "--depth=3"]), @r"
+    warning: --depth changes nothing: appel does not use it
+    warning: appel leaves out what the scene has: mirrors (k_s), the size of lamps (they count as points)
+    ");
+    assert_snapshot!(render("whitted", &["--method=appel"]), @"warning: appel leaves out what the scene has: mirrors (k_s), glass (k_t)");
+    assert_snapshot!(render("room", &["--depth=3"]), @"warning: whitted leaves out what the scene has: the size of lamps (they count as points)");
+    assert_eq!(render("whitted", &["--depth=3", "--spp=2", "--adaptive=0.1", "--seed=4"]), "");
+    let walk = ["--scene=whitted", "--pixel=1,1", "--size=8x8"];
+    assert_snapshot!(warnings(&[&["step", "whitted", "--index=kd"], &walk[..]].concat()), @"warning: --index changes nothing: whitted does not use it");
+    assert_snapshot!(warnings(&[&["step", "accel", "--index=kd", "--depth=2"], &walk[..]].concat()), @"warning: --depth changes nothing: accel does not use it");
+}
+
+/// Where there is detail all samples are taken, elsewhere one: as an EXR in numbers, as a PNG with the most
+/// white. The picture itself does not change.
+#[test]
+fn a_by_product_comes_beside_the_picture() {
+    let folder = folder(&[]);
+    let line = ["render", "whitted", "--size=40x24", "--spp=4", "--adaptive=0.1", "--out=new.exr"];
+    accepted(&folder, &line);
+    let alone = fs::read(folder.path().join("new.exr")).unwrap();
+    let output = accepted(
+        &folder,
+        &[&line[..], &["--also", "samples=n.exr", "--also=samples=n.png"]].concat(),
+    );
+    assert!(text(&output.stdout).ends_with("picture new.exr\nsamples n.exr\nsamples n.png\n"));
+    assert_eq!(fs::read(folder.path().join("new.exr")).unwrap(), alone);
+    let [numbers, shown] = ["n.exr", "n.png"].map(|name| load(folder.path().join(name)).unwrap());
+    let counts = |number: f32| numbers.pixels().iter().filter(|pixel| pixel[0] == number).count();
+    assert_eq!(counts(1.0) + counts(4.0), 40 * 24);
+    assert!(counts(1.0) > 100 && counts(4.0) > 100);
+    let white = shown.pixels().iter().filter(|pixel| pixel[0] == 1.0).count();
+    assert_eq!(white, counts(4.0));
 }
 
 #[test]
@@ -403,12 +451,11 @@ fn steps_that_cannot_be_walked_are_refused() {
     ");
     let unknown = ["step", "witted", "--scene=whitted", "--pixel=1,1"];
     assert_snapshot!(refusal(&folder, &unknown), @"error: unknown algorithm `witted`; known: whitted, accel");
-    let accel: [&[&str]; 5] = [
+    let accel: [&[&str]; 4] = [
         &["accel", "--pixel=8,0"],
         &["accel", "--pixel=0,8", "--index=kd"],
         &["accel", "--pixel=1,1", "--index=dk"],
         &["accel", "--pixel=1,1", "--index="],
-        &["whitted", "--pixel=1,1", "--index=kd"],
     ];
     let line = |case: &[&'static str]| {
         [&["step"], case, &["--scene=room", "--size=8x8", "--out=new.html"]].concat()
@@ -418,7 +465,6 @@ fn steps_that_cannot_be_walked_are_refused() {
     error: --pixel 0,8 lies outside of the picture of 8x8: columns are 0 to 7, rows 0 to 7
     error: unknown index `dk`; known: kd, wide, bvh, bsp, grid, linear, octree, obvhs-bvh2, obvhs-cwbvh
     error: unknown index ``; known: kd, bvh, bsp, wide, grid, linear, octree, obvhs-bvh2, obvhs-cwbvh
-    error: --index: whitted's walk is the same with every index; leave it out
     ");
 }
 
@@ -442,7 +488,7 @@ fn a_ray_walks_through_all_indexes_or_one() {
 #[test]
 fn a_walk_is_a_text_or_a_page() {
     let model = CORNER.replacen("f 1", "mtllib m.mtl\nusemtl <script>alert(1)</script>\nf 1", 1);
-    let library = b"newmtl <script>alert(1)</script>\nKd 0.5 0.5 0.5\nillum 3\nKs 0.5 0.5 0.5\n";
+    let library = b"newmtl <script>alert(1)</script>\nKd 0.5 0.5 0.5\nillum 3\nKs 0.2 0.2 0.2\n";
     let folder = folder(&[("corner.obj", model.as_bytes()), ("m.mtl", library)]);
     let line = ["step", "whitted", "--scene=corner.obj", "--pixel=16,16", "--size=32x32"];
     let walked = accepted(&folder, &line);

@@ -21,7 +21,7 @@ pub fn ray_tree(stage: &Stage, call: &Call) -> Node {
 
 /// The rays of a tree that were traced, by kind, and its shadow rays.
 ///
-/// `counts.of_kind(kind)` is the count of a kind, to be added to; two counts can be added by `+=`.
+/// `counts.count_mut(kind)` is the count of a kind, to be added to; two counts can be added by `+=`.
 pub fn count_rays(node: &Node) -> RayCounts {
     todo!("E1.9: count the rays")
 }

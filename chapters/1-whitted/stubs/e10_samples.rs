@@ -6,7 +6,7 @@ use chapter_1::exercises::prelude::*;
 ///
 /// - `radiance(x, y)`: the radiance at a point of the film, in pixels.
 /// - The pixel covers [x, x + 1] × [y, y + 1].
-pub fn pixel_mean(radiance: &Film, x: u32, y: u32, n: u32) -> Rgb {
+pub fn pixel_mean(radiance: &FilmFunction, x: u32, y: u32, n: u32) -> Rgb {
     todo!("E1.10: average the samples")
 }
 

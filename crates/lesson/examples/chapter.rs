@@ -93,9 +93,10 @@ fn make(effort: Effort) -> Finished {
     let rays = outcome.work.total(WorkKind::Rays);
     let claim = format!("A ray per pixel shows a ball of mean radiance {mean:.3}.");
     let plate = Plate::new("9.1", "Facing the eye", claim, rays == size.pixels() as u64)
-        .panel(Montage::new().tile(
-            Tile::new("facing", shown(&outcome.image)).color(method_color("appel")),
-        ))
+        .panel(
+            Montage::new()
+                .tile(Tile::new("facing", shown(&outcome.image)).color(method_color("appel"))),
+        )
         .note("Settings", format!("{size}, 1 sample per pixel"));
     let mut data = Table::new(["rays", "mean"]);
     data.push([rays.into(), mean.into()]);
@@ -124,7 +125,11 @@ const EXERCISE: Exercise<Subject> = Exercise {
         predict: "where is the ball brightest?",
         vary: "square the answer: what happens to the rim?",
         hints: ["a cosine", "|N·V|", "`n.dot(to_eye)`, without its sign"],
-        solution: Solution { file: "crates/lesson/examples/chapter.rs", item: "fn facing", notice: "either side" },
+        solution: Solution {
+            file: "crates/lesson/examples/chapter.rs",
+            item: "fn facing",
+            notice: "either side",
+        },
     },
     checks: &[Check { name: "at a slant from behind", run: slanted }],
     slips: slips! {
@@ -154,6 +159,11 @@ fn main() {
         println!("{} {}: {}", figure.id, figure.name, finished.plate.claim());
     }
     for verified in CHAPTER.course.verify() {
-        println!("{} {}: {}", verified.id, verified.name, if verified.holds() { "proved" } else { "FAILS" });
+        println!(
+            "{} {}: {}",
+            verified.id,
+            verified.name,
+            if verified.holds() { "proved" } else { "FAILS" }
+        );
     }
 }

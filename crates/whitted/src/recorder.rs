@@ -78,7 +78,7 @@ impl RayCounts {
     }
 
     /// The count of the rays that are traced for that reason.
-    pub fn of_kind(&mut self, kind: RayKind) -> &mut u64 {
+    pub fn count_mut(&mut self, kind: RayKind) -> &mut u64 {
         match kind {
             RayKind::Primary => &mut self.primary,
             RayKind::Mirror => &mut self.mirror,
@@ -89,7 +89,7 @@ impl RayCounts {
 
 impl Recorder for RayCounts {
     fn enter(&mut self, call: &Call) {
-        *self.of_kind(call.kind) += 1;
+        *self.count_mut(call.kind) += 1;
     }
 
     fn shadow(&mut self, _ray: &Ray, _visible: bool) {

@@ -255,8 +255,7 @@ fn draw(subject: &Subject) -> Image {
         };
         let surface = scene.surface_at(&ray, &hit);
         let n = surface.shading_normal;
-        let color = scene.material(surface.material).rho_d.at(surface.position, n);
-        color * (0.6 + 0.4 * n.dot(DVec3::new(-0.48, 0.8, 0.36)))
+        scene.reflectance(&surface).diffuse * (0.6 + 0.4 * n.dot(DVec3::new(-0.48, 0.8, 0.36)))
     })
 }
 

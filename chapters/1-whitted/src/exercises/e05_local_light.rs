@@ -38,8 +38,8 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         solution: Solution {
             file: "crates/core/src/illumination.rs",
             item: "pub fn local",
-            notice: "vis/d² is a function of its own, eq:attenuation, and R comes from the same `reflect` as the \
-                     mirror ray",
+            notice: "it is the bracket of eq:local: `lit`, below it, multiplies it by I · vis/d² and asks for vis last, \
+                     and R comes from the same `reflect` as the mirror ray",
         },
     },
     checks: &[
@@ -226,13 +226,8 @@ fn draw(subject: &Subject) -> Image {
     let scene = parsed("balls", BALLS);
     drawn(&scene, ImageSize::new(336, 128), |ray, surface| {
         let Some(surface) = surface else { return Rgb::splat(0.02) };
-        let material = scene.material(surface.material);
         let n = surface.shading_normal_towards(-ray.direction);
-        let reflectance = Reflectance {
-            diffuse: material.rho_d.at(surface.position, surface.geometric_normal),
-            specular: material.rho_s,
-            shininess: material.shininess,
-        };
+        let reflectance = scene.reflectance(&surface);
         let lamps = scene.lights.iter().map(|lamp| {
             let (intensity, visible, to_eye) = (lamp.intensity, true, -ray.direction);
             let toward = lamp.position - surface.position;

@@ -41,7 +41,8 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         solution: Solution {
             file: "crates/whitted/src/trace.rs",
             item: "fn at_surface",
-            notice: "no ray is traced for a share of 0, and no shadow ray is cast to a lamp that would add nothing",
+            notice: "no ray is traced for a share of 0, `Branches` in crates/core/src/optics.rs chooses n₁, n₂ and what \
+                     total reflection does, and no shadow ray is cast to a lamp that would add nothing",
         },
     },
     checks: &[

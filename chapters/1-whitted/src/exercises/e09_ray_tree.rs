@@ -87,7 +87,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
 fn counted(node: &Node, rule: &impl Fn(&Node) -> (bool, u32)) -> RayCounts {
     let (is_ray, shadows) = rule(node);
     let mut counts = RayCounts { shadow: shadows.into(), ..RayCounts::default() };
-    *counts.of_kind(node.kind) += u64::from(is_ray);
+    *counts.count_mut(node.kind) += u64::from(is_ray);
     for child in &node.children {
         counts += counted(child, rule);
     }

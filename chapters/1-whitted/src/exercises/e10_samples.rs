@@ -8,7 +8,7 @@ use lancer_core::image::{Image, ImageSize};
 use lancer_exercise::{Card, Check, Exercise, Shown, Solution, Verdict, same, slips, within};
 
 use super::reference::{pixel_mean, rms_error};
-use super::{Film, Stage, Subject, painted};
+use super::{FilmFunction, Stage, Subject, painted};
 use crate::scenes;
 
 pub const EXERCISE: Exercise<Subject> = Exercise {
@@ -33,7 +33,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         ],
         solution: Solution {
             file: "crates/core/src/sampling.rs",
-            item: "pub fn points",
+            item: "pub fn some_of_pixel",
             notice: "the same grid beside two random layouts; `rmse` is in crates/core/src/metric/mod.rs",
         },
     },
@@ -78,7 +78,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
     explain: None,
 };
 
-fn diagonal(film: &Film, x: u32, y: u32, n: u32) -> Rgb {
+fn diagonal(film: &FilmFunction, x: u32, y: u32, n: u32) -> Rgb {
     let corner = DVec2::new(f64::from(x), f64::from(y));
     let samples = (0..n).map(|i| corner + (f64::from(i) + 0.5) / f64::from(n));
     samples.map(|point| film(point.x, point.y)).sum::<Rgb>() / f64::from(n)
@@ -88,7 +88,13 @@ fn channels(pixels: &[Rgb]) -> f64 {
     (3 * pixels.len()) as f64
 }
 
-fn compare(subject: &Subject, film: &Film, text: &str, xyn: [u32; 3], wanted: Rgb) -> Verdict {
+fn compare(
+    subject: &Subject,
+    film: &FilmFunction,
+    text: &str,
+    xyn: [u32; 3],
+    wanted: Rgb,
+) -> Verdict {
     let [x, y, n] = xyn;
     let case = || format!("pixel ({x}, {y}), n = {n}, radiance(x, y) = {text}");
     within(1e-12, case, &(subject.pixel_mean)(film, x, y, n), &wanted)

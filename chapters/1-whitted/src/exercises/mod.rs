@@ -35,7 +35,7 @@ pub use stage::{Node, Stage};
 pub type Meeting = (f64, DVec3);
 
 /// The radiance at a film point (x, y), in pixels.
-pub type Film<'a> = dyn Fn(f64, f64) -> Rgb + 'a;
+pub type FilmFunction<'a> = dyn Fn(f64, f64) -> Rgb + 'a;
 
 /// A point of a surface in the light of one lamp, and from where it is seen.
 #[derive(Clone, Copy, Debug)]
@@ -81,7 +81,7 @@ pub struct Subject {
     /// The rays of a tree by kind.
     pub count_rays: fn(&Node) -> RayCounts,
     /// The mean radiance of a pixel (x, y) over a regular grid of n × n samples.
-    pub pixel_mean: fn(&Film, u32, u32, u32) -> Rgb,
+    pub pixel_mean: fn(&FilmFunction, u32, u32, u32) -> Rgb,
     /// The root mean square error over all pixels and channels: reference, estimate.
     pub rms_error: fn(&[Rgb], &[Rgb]) -> f64,
 }

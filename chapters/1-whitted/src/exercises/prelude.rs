@@ -9,4 +9,4 @@ pub use lancer_core::scene::{Camera, Material};
 pub use lancer_core::world::SurfacePoint;
 pub use lancer_whitted::{Call, RayCounts, RayKind};
 
-pub use super::{Film, Lit, Meeting, Node, Stage};
+pub use super::{FilmFunction, Lit, Meeting, Node, Stage};

@@ -11,7 +11,7 @@ use lancer_core::scene::{Camera, PointSource};
 use lancer_core::world::{SurfacePoint, World};
 use lancer_whitted::{AtLimit, Call, RayCounts, RayEnd, RayTree, Settings, Whitted};
 
-use super::{Film, Lit, Meeting, Node, Stage, Subject};
+use super::{FilmFunction, Lit, Meeting, Node, Stage, Subject};
 
 /// All of them.
 pub const SUBJECT: Subject = Subject {
@@ -127,7 +127,7 @@ pub fn count_rays(node: &Node) -> RayCounts {
     let mut open = vec![node];
     while let Some(node) = open.pop() {
         if node.traced {
-            *counts.of_kind(node.kind) += 1;
+            *counts.count_mut(node.kind) += 1;
         }
         counts.shadow += u64::from(node.shadows);
         open.extend(&node.children);
@@ -136,7 +136,7 @@ pub fn count_rays(node: &Node) -> RayCounts {
 }
 
 /// [`Subject::pixel_mean`].
-pub fn pixel_mean(radiance: &Film, x: u32, y: u32, n: u32) -> Rgb {
+pub fn pixel_mean(radiance: &FilmFunction, x: u32, y: u32, n: u32) -> Rgb {
     let sampling = PixelSampling { pattern: Pattern::Regular, samples: n * n, seed: 0 };
     let radiances = sampling.of_pixel(x, y).map(|sample| radiance(sample.film.x, sample.film.y));
     radiances.sum::<Rgb>() / f64::from(n * n)

@@ -39,12 +39,7 @@ impl<'a> Stage<'a> {
 
     /// ρ_d, ρ_s and n at a point of a surface.
     pub fn reflectance(&self, surface: &SurfacePoint) -> Reflectance {
-        let material = self.scene.material(surface.material);
-        Reflectance {
-            diffuse: material.rho_d.at(surface.position, surface.geometric_normal),
-            specular: material.rho_s,
-            shininess: material.shininess,
-        }
+        self.scene.reflectance(surface)
     }
 
     /// vis(i): whether a shadow ray reaches its lamp, at t = 1.

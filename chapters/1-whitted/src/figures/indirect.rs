@@ -126,13 +126,13 @@ struct Forward {
 }
 
 /// The film of one picture, and the eye before it.
-struct Film {
+struct Pinhole {
     rays: PrimaryRays,
     size: ImageSize,
     eye: DVec3,
 }
 
-impl Film {
+impl Pinhole {
     /// The pixel on which a point is seen.
     fn pixel(&self, point: DVec3) -> Option<usize> {
         let at = self.rays.film_point(point)?.floor();
@@ -152,8 +152,8 @@ impl Film {
 
 /// Sends `count` light rays from the lamp to random points of the mirror, and connects the surfaces that
 /// they meet then with the eye: directly, and by way of the mirror.
-fn forward(stage: &Stage, film: &Film, count: u32) -> Forward {
-    let mut radiances = vec![Rgb::ZERO; film.size.pixels()];
+fn forward(stage: &Stage, pinhole: &Pinhole, count: u32) -> Forward {
+    let mut radiances = vec![Rgb::ZERO; pinhole.size.pixels()];
     let (mut traced, mut solid_angle) = (0, 0.0);
     let mut random = Uniform::new(9, 0, 0);
     for _ in 0..count {
@@ -172,16 +172,17 @@ fn forward(stage: &Stage, film: &Film, count: u32) -> Forward {
         // The mirror shows the surface's image, whose normal is mirrored as well.
         let image = (image_of(surface.position), DVec3 { z: -n.z, ..n });
         for (by_mirror, (point, n)) in [(false, (surface.position, n)), (true, image)] {
-            let Some(pixel) = film.pixel(point).filter(|_| n.dot(film.eye - point) > 0.0) else {
+            let Some(pixel) = pinhole.pixel(point).filter(|_| n.dot(pinhole.eye - point) > 0.0)
+            else {
                 continue;
             };
             let (visible, share) = if by_mirror {
-                (stage.by_way_of_mirror(&surface, film.eye, &mut traced), stage.k_s())
+                (stage.by_way_of_mirror(&surface, pinhole.eye, &mut traced), stage.k_s())
             } else {
-                (stage.reaches(&surface, film.eye, &mut traced), Rgb::ONE)
+                (stage.reaches(&surface, pinhole.eye, &mut traced), Rgb::ONE)
             };
             if visible {
-                radiances[pixel] += carried * share * film.splat(point, n);
+                radiances[pixel] += carried * share * pinhole.splat(point, n);
             }
         }
     }
@@ -223,7 +224,7 @@ pub fn make(effort: Effort) -> Finished {
     let index = ObvhsBvh2::build(&scene);
     let stage = Stage::new(World { scene: &scene, index: &index });
     let size = effort.pick(ImageSize::new(72, 54), ImageSize::new(400, 300));
-    let film = Film { rays: scene.camera.primary_rays(size), size, eye: scene.camera.eye };
+    let pinhole = Pinhole { rays: scene.camera.primary_rays(size), size, eye: scene.camera.eye };
     let whitted = |scene: &Scene, samples, seed| {
         let sampling = PixelSampling { pattern: Pattern::Owen, samples, seed };
         let rendering = trace_picture::<RayCounts>(scene, Settings::default(), size, sampling);
@@ -246,7 +247,7 @@ pub fn make(effort: Effort) -> Finished {
         if light_rays == 0 {
             return (Outcome { image, samples, solid_angle: f64::NAN }, rays);
         }
-        let light = forward(&stage, &film, light_rays);
+        let light = forward(&stage, &pinhole, light_rays);
         let radiances = light.film.iter().map(|radiance| radiance.as_vec3().to_array());
         let image = pixelwise(&image, &Image::from_pixels(size, radiances.collect()), |a, b| a + b);
         (Outcome { image, samples, solid_angle: light.solid_angle }, rays + light.rays)
@@ -267,7 +268,7 @@ pub fn make(effort: Effort) -> Finished {
     });
 
     // What the mirror adds to a picture beside itself, as a share of what it should add.
-    let beside = beside_the_mirror(&film);
+    let beside = beside_the_mirror(&pinhole);
     let mut blind = scene.clone();
     blind.materials[stage.mirror.0 as usize].k_s = Rgb::ZERO;
     let total =
@@ -335,14 +336,15 @@ pub fn make(effort: Effort) -> Finished {
 }
 
 /// The pixels on which the mirror is not seen.
-fn beside_the_mirror(film: &Film) -> Vec<[u32; 2]> {
+fn beside_the_mirror(pinhole: &Pinhole) -> Vec<[u32; 2]> {
     let corners = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE].map(|corner| {
-        let seen = film.rays.film_point(CORNER + (corner * MIRROR).extend(0.0));
+        let seen = pinhole.rays.film_point(CORNER + (corner * MIRROR).extend(0.0));
         seen.expect("the mirror is before the camera")
     });
     let low = corners.into_iter().fold(DVec2::INFINITY, DVec2::min);
     let high = corners.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max);
-    let pixels = (0..film.size.height).flat_map(|y| (0..film.size.width).map(move |x| [x, y]));
+    let pixels =
+        (0..pinhole.size.height).flat_map(|y| (0..pinhole.size.width).map(move |x| [x, y]));
     let is_beside = |[x, y]: [u32; 2]| {
         let corner = DVec2::new(f64::from(x), f64::from(y));
         (corner + 1.0).cmplt(low).any() || corner.cmpgt(high).any()

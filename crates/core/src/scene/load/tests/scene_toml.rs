@@ -55,7 +55,7 @@ fn every_key_reaches_the_scene() {
             rho_s: Rgb::splat(0.5),
             shininess: 80.0,
             k_s: Rgb::splat(0.1),
-            k_t: Rgb::new(0.9, 0.8, 0.7),
+            k_t: Rgb::new(0.8, 0.7, 0.6),
             refractive_index: 1.5,
             emission: Rgb::ZERO,
         },
