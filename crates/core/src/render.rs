@@ -518,7 +518,7 @@ mod tests {
         let (sampling, radiance) = noise(4, 3);
         let whole = render_pixels(SIZE, sampling, Control::default(), &radiance).unwrap();
         let mut film = Film::new(SIZE, 7);
-        let is_set = |x: u32, y: u32| x < 7 || x < 14 && (x + y) % 2 == 0;
+        let is_set = |x: u32, y: u32| x < 7 || x < 14 && (x + y).is_multiple_of(2);
         film.fill(Control::default(), |tile| {
             for (x, y) in tile.places() {
                 if is_set(x, y) {
