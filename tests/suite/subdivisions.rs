@@ -125,8 +125,8 @@ fn the_leaves_of_an_octree_fill_its_cube() {
     let scene = Scene::of_mesh(icosphere(3));
     let octree = Octree::build(&scene);
     let volume: f64 =
-        octree.leaves().map(|(cell, _)| (cell.max - cell.min).element_product()).sum();
-    let whole = octree.leaves().map(|(cell, _)| cell).reduce(Bounds3::union).unwrap();
+        octree.leaves().map(|leaf| (leaf.bounds.max - leaf.bounds.min).element_product()).sum();
+    let whole = octree.leaves().map(|leaf| leaf.bounds).reduce(Bounds3::union).unwrap();
     let wanted = (whole.max - whole.min).element_product();
     assert!((volume / wanted - 1.0).abs() < 1e-12, "{volume} of {wanted}");
 }

@@ -6,9 +6,9 @@ use lancer_core::intersector::{Hit, Observer, Probe, Query, Traversal, Wanted};
 use lancer_core::scene::{PrimitiveId, Scene, Shape, Subset};
 use smallvec::SmallVec;
 
+use crate::margins::{rounding, slack};
 use crate::spatial::{
-    PARALLEL, Polygon, REFERENCES_PER_PRIMITIVE, clip, depth_limit, margin, shared_allowance,
-    thickness,
+    PARALLEL, Polygon, REFERENCES_PER_PRIMITIVE, clip, depth_limit, shared_allowance,
 };
 use crate::touching::surface_points;
 
@@ -41,8 +41,9 @@ use crate::touching::surface_points;
 pub struct BspTree<'s> {
     scene: &'s Scene,
     bounds: Bounds3,
-    /// What is this close to a plane may be on either side of it.
-    tolerance: f64,
+    /// What is this close to a plane may be on either side of it: each of up to 50 cuts moves a new corner by
+    /// a few ε.
+    slack: f64,
     /// In depth-first order; the first is the root.
     nodes: Vec<Node>,
     /// The primitives of the nodes, node by node.
@@ -181,32 +182,25 @@ impl BspBuilder {
                 Piece { primitive, part }
             })
             .collect();
-        // Each of up to 50 cuts moves a new corner by a few ε.
-        let tolerance = if pieces.is_empty() { 0.0 } else { 16.0 * margin(bounds) };
+        let slack = slack(bounds);
         let max_depth = depth_limit(pieces.len());
         let allowance = REFERENCES_PER_PRIMITIVE * pieces.len();
-        let root = self.subtree(pieces, tolerance, max_depth, allowance);
+        let root = self.subtree(pieces, slack, max_depth, allowance);
         let (nodes, primitives) = (Vec::new(), Vec::new());
-        let mut tree = BspTree { scene, bounds, tolerance, nodes, primitives, max_depth };
+        let mut tree = BspTree { scene, bounds, slack, nodes, primitives, max_depth };
         tree.lay_out(root);
         tree
     }
 
-    fn subtree(
-        &self,
-        pieces: Vec<Piece>,
-        tolerance: f64,
-        levels: u32,
-        allowance: usize,
-    ) -> Subtree {
+    fn subtree(&self, pieces: Vec<Piece>, slack: f64, levels: u32, allowance: usize) -> Subtree {
         let leaf =
             |pieces: &[Piece]| Subtree::Leaf(pieces.iter().map(|piece| piece.primitive).collect());
         if levels == 0 || pieces.len() <= LEAF {
             return leaf(&pieces);
         }
-        let Some(plane) = self.best_plane(&pieces, tolerance) else { return leaf(&pieces) };
+        let Some(plane) = self.best_plane(&pieces, slack) else { return leaf(&pieces) };
         let sides: Vec<Side> =
-            pieces.iter().map(|piece| side(&piece.part, &plane, tolerance)).collect();
+            pieces.iter().map(|piece| side(&piece.part, &plane, slack)).collect();
         let count = |wanted: Side| sides.iter().filter(|&&side| side == wanted).count();
         let cut = count(Side::Both);
         let fuller = cut + count(Side::Behind).max(count(Side::Front));
@@ -229,19 +223,19 @@ impl BspBuilder {
         }
         let parallel = behind.len() + front.len() > PARALLEL;
         let allowances = shared_allowance(allowance - within.len(), [behind.len(), front.len()]);
-        let behind = || self.subtree(behind, tolerance, levels - 1, allowances[0]);
-        let front = || self.subtree(front, tolerance, levels - 1, allowances[1]);
+        let behind = || self.subtree(behind, slack, levels - 1, allowances[0]);
+        let front = || self.subtree(front, slack, levels - 1, allowances[1]);
         let (behind, front) =
             if parallel { rayon::join(behind, front) } else { (behind(), front()) };
         Subtree::Inner { plane, within, children: Box::new([behind, front]) }
     }
 
     /// The plane that parts the pieces best, if there is a plane.
-    fn best_plane(&self, pieces: &[Piece], tolerance: f64) -> Option<Plane> {
+    fn best_plane(&self, pieces: &[Piece], slack: f64) -> Option<Plane> {
         let score = |plane: &Plane| {
             let (mut behind, mut front, mut cut) = (0_usize, 0_usize, 0);
             for piece in spread(pieces, JUDGES) {
-                match side(&piece.part, plane, tolerance) {
+                match side(&piece.part, plane, slack) {
                     Side::Behind => behind += 1,
                     Side::Within => {}
                     Side::Front => front += 1,
@@ -289,9 +283,9 @@ fn spread(pieces: &[Piece], count: usize) -> impl Iterator<Item = &Piece> {
     })
 }
 
-fn side(part: &Part, plane: &Plane, tolerance: f64) -> Side {
+fn side(part: &Part, plane: &Plane, slack: f64) -> Side {
     let [min, max] = part.reach(plane);
-    match (min < -tolerance, max > tolerance) {
+    match (min < -slack, max > slack) {
         (true, true) => Side::Both,
         (true, false) => Side::Behind,
         (false, true) => Side::Front,
@@ -374,8 +368,9 @@ impl<'s> BspTree<'s> {
     ) -> Option<Hit> {
         let &Query { ref ray, range, wanted } = query;
         let mut probe = Probe::new(self.scene, ray, range);
-        // Rounding may move the ray, or the polygon that it meets, across a plane.
-        let thickness = thickness(ray, self.bounds) + 2.0 * self.tolerance;
+        // Rounding may move the ray, or the polygon that it meets, across a plane; two products of three terms
+        // say where that is.
+        let thickness = 4.0 * rounding(ray, self.bounds)? + 2.0 * self.slack;
         let bounds = self.bounds.grown(thickness);
         let mut inside = Slabs::new(ray).cross(bounds.min, bounds.max, range)?;
         let origin = ray.origin - self.bounds.center();
@@ -428,7 +423,7 @@ impl<'s> BspTree<'s> {
             let best = probe.range().max;
             let next = loop {
                 match stack.pop() {
-                    Some(pending) if pending.inside.min <= best => break pending,
+                    Some(pending) if pending.inside.min * Slabs::NEAR <= best => break pending,
                     Some(_) => {}
                     None => return probe.best(),
                 }
@@ -511,7 +506,7 @@ impl<'s> BspTree<'s> {
                     // Where a point is within rounding of a plane, both of its sides will do.
                     let height = |point: DVec3| plane.distance(point);
                     points.retain(|&(primitive, point)| {
-                        height(point).abs() > 2.0 * self.tolerance
+                        height(point).abs() > 2.0 * self.slack
                             && listed.binary_search(&primitive).is_err()
                     });
                     let (behind, in_front) =

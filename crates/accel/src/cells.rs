@@ -17,8 +17,25 @@ pub struct Cell<'i> {
 
 /// The cells that a ray visits, near ones first.
 pub(crate) trait RayCells<'i> {
-    /// The next cell that the ray enters before `max`, up to rounding.
-    fn next<O: Observer>(&mut self, max: f64, observer: &mut O) -> Option<Cell<'i>>;
+    /// The parameter at which the ray enters its next cell, if that is before `max`, up to rounding, and what
+    /// comes near the cell.
+    fn next<O: Observer>(&mut self, max: f64, observer: &mut O)
+    -> Option<(f64, &'i [PrimitiveId])>;
+
+    /// Where the cell is that came last. A search does not ask.
+    fn bounds(&self) -> Bounds3;
+}
+
+/// The cells up to `max`, whether or not the ray hits anything in them.
+pub(crate) fn visited<'i>(
+    mut cells: Option<impl RayCells<'i>>,
+    max: f64,
+) -> impl Iterator<Item = Cell<'i>> {
+    std::iter::from_fn(move || {
+        let cells = cells.as_mut()?;
+        let (enter, primitives) = cells.next(max, &mut ())?;
+        Some(Cell { bounds: cells.bounds(), enter, primitives })
+    })
 }
 
 /// Tests the primitives of cell after cell until any hit will do or no cell can hold a better hit.
@@ -35,8 +52,8 @@ pub(crate) fn search<'i, O: Observer>(
     observer: &mut O,
 ) -> Option<Hit> {
     let mut mailbox = Mailbox::new();
-    while let Some(cell) = cells.next(probe.range().max, observer) {
-        for &primitive in cell.primitives {
+    while let Some((_, primitives)) = cells.next(probe.range().max, observer) {
+        for &primitive in primitives {
             if mailboxing && mailbox.replace(primitive) {
                 continue;
             }

@@ -7,8 +7,9 @@ use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
 use lancer_core::intersector::{BeamIndex, Hit, Observer, Probe, Query, Traversal};
 use lancer_core::scene::{PrimitiveId, Scene, Subset};
 
-use crate::cells::{Cell, RayCells, search};
-use crate::touching::{Footprint, overlap, rounding, slack, surface_points};
+use crate::cells::{Cell, RayCells, search, visited};
+use crate::margins::{rounding, slack};
+use crate::touching::{Footprint, overlap, surface_points};
 
 /// The slides' regular subdivision of space, « subdivision spatiale régulière »: a box around the scene
 /// cut into equal cells, each with a list of what comes near it.
@@ -128,11 +129,7 @@ impl<'s> Grid<'s> {
 
     /// The cells that a ray visits in `range`, near ones first, whether or not it hits anything in them.
     pub fn cells(&self, ray: &Ray, range: Interval) -> impl Iterator<Item = Cell<'_>> {
-        let mut path = self.path(ray, range);
-        std::iter::from_fn(move || match path.as_mut()? {
-            Path::Line(line) => line.next(range.max, &mut ()),
-            Path::Slices(slices) => slices.next(range.max, &mut ()),
-        })
+        visited(self.path(ray, range), range.max)
     }
 
     #[inline]
@@ -141,10 +138,15 @@ impl<'s> Grid<'s> {
         if rounding > self.slack {
             let Bounds3 { min, max } = self.bounds.grown(rounding);
             Slabs::new(ray).enter(min, max, range)?;
-            return Some(Path::Slices(Slices(Box::new(self.slices(*ray, rounding)))));
+            let cells = Box::new(self.slices(*ray, rounding));
+            return Some(Path::Slices(Slices { cells, bounds: Bounds3::EMPTY }));
         }
         let enter = Slabs::new(ray).enter(self.bounds.min, self.bounds.max, range)?;
-        Some(Path::Line(Line { grid: self, dda: Dda::new(self.lattice, ray, enter) }))
+        Some(Path::Line(Line {
+            grid: self,
+            dda: Dda::new(self.lattice, ray, enter),
+            at: IVec3::ZERO,
+        }))
     }
 
     /// The cells that a ray might visit which errs by up to `rounding`: slice by slice along its longest
@@ -163,16 +165,19 @@ impl<'s> Grid<'s> {
             // Once for the planes of the slice, and once for the ray beside them.
             let [mut low, mut high] = self.lattice.range(way.grown(2.0 * rounding));
             (low[axis], high[axis]) = (slice, slice);
-            cells_between([low, high]).map(move |cell| self.cell(cell, enter))
+            cells_between([low, high]).map(move |cell| Cell {
+                bounds: self.lattice.bounds(cell),
+                enter,
+                primitives: self.row(cell),
+            })
         })
     }
 
-    /// Inlined, so that a search, which does not ask for the cell's box, does not pay for it.
+    /// What comes near a cell.
     #[inline(always)]
-    fn cell(&self, cell: IVec3, enter: f64) -> Cell<'_> {
+    fn row(&self, cell: IVec3) -> &[PrimitiveId] {
         let index = self.lattice.index(cell);
-        let row = self.first[index] as usize..self.first[index + 1] as usize;
-        Cell { bounds: self.lattice.bounds(cell), enter, primitives: &self.primitives[row] }
+        &self.primitives[self.first[index] as usize..self.first[index + 1] as usize]
     }
 
     /// Checks that the rows are in order, that every one of these primitives lies in the cells of its
@@ -187,22 +192,22 @@ impl<'s> Grid<'s> {
         }
         let everywhere = [IVec3::ZERO, lattice.resolution - 1];
         for at in cells_between(everywhere) {
-            let cell = self.cell(at, 0.0);
-            if !cell.primitives.is_sorted_by(|a, b| a < b) {
+            let (bounds, row) = (lattice.bounds(at), self.row(at));
+            if !row.is_sorted_by(|a, b| a < b) {
                 return Err(format!("cell {at} holds a primitive twice"));
             }
             let near = |&primitive: &PrimitiveId| {
                 let reach = scene.primitive_bounds(primitive).grown(2.0 * self.slack);
-                overlap(reach, cell.bounds)
+                overlap(reach, bounds)
             };
-            if !cell.primitives.iter().all(near) {
+            if !row.iter().all(near) {
                 return Err(format!("cell {at} holds a primitive that lies elsewhere"));
             }
         }
         for primitive in all.into().iter() {
             for point in surface_points(scene, primitive) {
                 let at = lattice.cell_of(point);
-                if self.cell(at, 0.0).primitives.binary_search(&primitive).is_err() {
+                if self.row(at).binary_search(&primitive).is_err() {
                     return Err(format!("{primitive:?} is missing from cell {at}"));
                 }
             }
@@ -235,35 +240,80 @@ enum Path<'g> {
     Slices(Slices<'g>),
 }
 
+impl<'g> RayCells<'g> for Path<'g> {
+    fn next<O: Observer>(
+        &mut self,
+        max: f64,
+        observer: &mut O,
+    ) -> Option<(f64, &'g [PrimitiveId])> {
+        match self {
+            Self::Line(line) => line.next(max, observer),
+            Self::Slices(slices) => slices.next(max, observer),
+        }
+    }
+
+    fn bounds(&self) -> Bounds3 {
+        match self {
+            Self::Line(line) => line.bounds(),
+            Self::Slices(slices) => slices.bounds(),
+        }
+    }
+}
+
 /// The cells along the ray's line.
 struct Line<'g> {
     grid: &'g Grid<'g>,
     dda: Dda,
+    /// The cell that came last.
+    at: IVec3,
 }
 
 impl<'g> RayCells<'g> for Line<'g> {
     #[inline(always)]
-    fn next<O: Observer>(&mut self, max: f64, observer: &mut O) -> Option<Cell<'g>> {
+    fn next<O: Observer>(
+        &mut self,
+        max: f64,
+        observer: &mut O,
+    ) -> Option<(f64, &'g [PrimitiveId])> {
         let enter = self.dda.enter;
         if enter * Slabs::NEAR > max {
             return None;
         }
         let cell = self.dda.next()?;
+        self.at = cell;
         observer.region(&|| self.grid.lattice.bounds(cell));
         observer.cell_visit();
-        Some(self.grid.cell(cell, enter))
+        Some((enter, self.grid.row(cell)))
+    }
+
+    fn bounds(&self) -> Bounds3 {
+        self.grid.lattice.bounds(self.at)
     }
 }
 
 /// The cells that a ray from far away might visit.
-struct Slices<'g>(Box<dyn Iterator<Item = Cell<'g>> + 'g>);
+struct Slices<'g> {
+    cells: Box<dyn Iterator<Item = Cell<'g>> + 'g>,
+    /// Of the cell that came last.
+    bounds: Bounds3,
+}
 
 impl<'g> RayCells<'g> for Slices<'g> {
-    fn next<O: Observer>(&mut self, max: f64, observer: &mut O) -> Option<Cell<'g>> {
-        let cell = self.0.next().filter(|cell| cell.enter * Slabs::NEAR <= max)?;
-        observer.region(&|| cell.bounds);
+    fn next<O: Observer>(
+        &mut self,
+        max: f64,
+        observer: &mut O,
+    ) -> Option<(f64, &'g [PrimitiveId])> {
+        let Cell { bounds, enter, primitives } =
+            self.cells.next().filter(|cell| cell.enter * Slabs::NEAR <= max)?;
+        self.bounds = bounds;
+        observer.region(&|| bounds);
         observer.cell_visit();
-        Some(cell)
+        Some((enter, primitives))
+    }
+
+    fn bounds(&self) -> Bounds3 {
+        self.bounds
     }
 }
 

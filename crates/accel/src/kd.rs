@@ -4,17 +4,18 @@ mod sides;
 
 use glam::DVec3;
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
-use lancer_core::intersector::{Hit, Observer, Probe, Query, Traversal, Wanted};
+use lancer_core::intersector::{Hit, Observer, Probe, Query, Traversal};
 use lancer_core::scene::{PrimitiveId, Scene, Shape, Subset};
 use smallvec::SmallVec;
 
 pub use sides::Sides;
 use sides::Thick;
 
+use crate::cells::{Cell, RayCells, search, visited};
+use crate::margins::{rounding, slack};
 use crate::sah::sah_cost;
 use crate::spatial::{
-    Leaf, PARALLEL, Polygon, REFERENCES_PER_PRIMITIVE, clip, common, depth_limit, margin,
-    shared_allowance, thickness,
+    Leaf, PARALLEL, Polygon, REFERENCES_PER_PRIMITIVE, clip, common, depth_limit, shared_allowance,
 };
 
 /// « Subdivision spatiale irrégulière »: a tree of planes perpendicular to an axis, each put where it
@@ -115,17 +116,17 @@ impl KdBuilder {
     pub fn build<'s>(self, primitives: impl Into<Subset<'s>>) -> KdTree<'s> {
         let all = primitives.into();
         let scene = all.scene();
-        let references: Vec<Reference> = all
-            .iter()
-            .map(|primitive| {
-                let bounds = scene.primitive_bounds(primitive);
-                Reference { primitive, bounds: bounds.grown(margin(bounds)) }
-            })
-            .collect();
-        let bounds = references.iter().map(|r| r.bounds).fold(Bounds3::EMPTY, Bounds3::union);
+        let bounds = all.bounds();
+        let slack = slack(bounds);
+        let bounds = bounds.grown(slack);
+        let reference = |primitive| {
+            let bounds = scene.primitive_bounds(primitive).grown(slack);
+            Reference { primitive, bounds }
+        };
+        let references: Vec<Reference> = all.iter().map(reference).collect();
         let max_depth = depth_limit(references.len());
         let allowance = REFERENCES_PER_PRIMITIVE * references.len();
-        let root = self.subtree(scene, bounds, references, max_depth, allowance);
+        let root = self.subtree(scene, slack, bounds, references, max_depth, allowance);
         let mut tree =
             KdTree { scene, bounds, nodes: Vec::new(), primitives: Vec::new(), max_depth };
         tree.lay_out(root);
@@ -135,6 +136,7 @@ impl KdBuilder {
     fn subtree(
         &self,
         scene: &Scene,
+        slack: f64,
         cell: Bounds3,
         references: Vec<Reference>,
         levels: u32,
@@ -156,7 +158,7 @@ impl KdBuilder {
         for reference in references {
             match is_on(&reference) {
                 [true, true] => {
-                    let parts = cells.map(|half| self.part(scene, &reference, half));
+                    let parts = cells.map(|half| self.part(scene, slack, &reference, half));
                     for (side, bounds) in [&mut below, &mut above].into_iter().zip(parts) {
                         if !bounds.is_empty() {
                             side.push(Reference { bounds, ..reference });
@@ -169,21 +171,20 @@ impl KdBuilder {
         }
         let parallel = below.len() + above.len() > PARALLEL;
         let allowances = shared_allowance(allowance, [below.len(), above.len()]);
-        let below = || self.subtree(scene, cells[0], below, levels - 1, allowances[0]);
-        let above = || self.subtree(scene, cells[1], above, levels - 1, allowances[1]);
+        let below = || self.subtree(scene, slack, cells[0], below, levels - 1, allowances[0]);
+        let above = || self.subtree(scene, slack, cells[1], above, levels - 1, allowances[1]);
         let (below, above) = if parallel { rayon::join(below, above) } else { (below(), above()) };
         Subtree::Inner { axis, split, children: Box::new([below, above]) }
     }
 
     /// Bounds of the part of a primitive that is in a cell; empty when it does not come near.
-    fn part(&self, scene: &Scene, reference: &Reference, cell: Bounds3) -> Bounds3 {
+    fn part(&self, scene: &Scene, slack: f64, reference: &Reference, cell: Bounds3) -> Bounds3 {
         let within = common(reference.bounds, cell);
         if !self.perfect_splits {
             return within;
         }
         let whole = scene.primitive_bounds(reference.primitive);
-        let margin = margin(whole);
-        let near = within.grown(margin);
+        let near = within.grown(slack);
         let part = match scene.shape(reference.primitive) {
             Shape::Triangle(index) => Bounds3::of_points(clipped(scene.mesh.corners(index), near)),
             // A sphere keeps its box unless the cell is in a corner of it.
@@ -191,10 +192,10 @@ impl KdBuilder {
                 let center = whole.center();
                 let nearest = center.clamp(near.min, near.max);
                 let radius = 0.5 * (whole.max - whole.min).max_element();
-                if center.distance(nearest) > radius + margin { Bounds3::EMPTY } else { whole }
+                if center.distance(nearest) > radius + slack { Bounds3::EMPTY } else { whole }
             }
         };
-        if part.is_empty() { part } else { common(part.grown(margin), within) }
+        if part.is_empty() { part } else { common(part.grown(slack), within) }
     }
 
     /// The cheapest plane, if it is cheaper than testing all.
@@ -352,64 +353,21 @@ impl<'s> KdTree<'s> {
         size_of_val(self.nodes.as_slice()) + size_of_val(self.primitives.as_slice())
     }
 
-    /// [`KdTree::walk`] that also tells the nodes that are leaves.
+    /// The cells that a ray visits in `range`, near ones first, whether or not it hits anything in them.
+    pub fn cells(&self, ray: &Ray, range: Interval) -> impl Iterator<Item = Cell<'_>> {
+        visited(self.descent(ray, range), range.max)
+    }
+
     #[inline(always)]
-    fn walk_leaves<O: Observer>(
-        &self,
-        query: &Query,
-        observer: &mut O,
-        mut enter_leaf: impl FnMut(usize),
-    ) -> Option<Hit> {
-        let &Query { ref ray, range, wanted } = query;
-        let mut probe = Probe::new(self.scene, ray, range);
-        let thickness = thickness(ray, self.bounds);
-        let bounds = self.bounds.grown(thickness);
-        let mut inside = Slabs::new(ray).cross(bounds.min, bounds.max, range)?;
+    fn descent(&self, ray: &Ray, range: Interval) -> Option<Descent<'_>> {
+        let rounding = rounding(ray, self.bounds)?;
+        let Bounds3 { min, max } = self.bounds.grown(rounding);
+        let inside = Slabs::new(ray).cross(min, max, range)?;
         let (o, d) = (ray.origin.to_array(), ray.direction.to_array());
-        let axes: [Thick; 3] = std::array::from_fn(|k| Thick::new(o[k], d[k], thickness));
-        let mut stack = Stack::new();
-        let mut index = 0;
-        loop {
-            observer.region(&|| self.cell(index));
-            observer.cell_visit();
-            match self.nodes[index] {
-                Node::Inner { axis, above, split } => {
-                    let axis = &axes[usize::from(axis)];
-                    let (below, above) = (index + 1, above as usize);
-                    let (near, far) = if axis.negative { (above, below) } else { (below, above) };
-                    index = match axis.divide(split, inside) {
-                        Sides::Near => near,
-                        Sides::Far => far,
-                        Sides::Both { near: first, far: later } => {
-                            stack.push(Pending { node: far as u32, inside: later });
-                            inside = first;
-                            near
-                        }
-                    };
-                    continue;
-                }
-                Node::Leaf { first, count } => {
-                    enter_leaf(index);
-                    for &primitive in &self.primitives[first as usize..][..count as usize] {
-                        observer.primitive_test(primitive);
-                        if probe.test(primitive) && wanted == Wanted::Any {
-                            return probe.best();
-                        }
-                    }
-                }
-            }
-            // A hit may lie beyond the cell that it was found in: what comes before it still counts.
-            let best = probe.range().max;
-            let next = loop {
-                match stack.pop() {
-                    Some(pending) if pending.inside.min <= best => break pending,
-                    Some(_) => {}
-                    None => return probe.best(),
-                }
-            };
-            index = next.node as usize;
-            inside = Interval { min: next.inside.min, max: next.inside.max.min(best) };
-        }
+        let axes: [Thick; 3] = std::array::from_fn(|k| Thick::new(o[k], d[k], rounding));
+        let mut pending = Stack::new();
+        pending.push(Pending { node: 0, inside });
+        Some(Descent { tree: self, axes, pending, at: 0 })
     }
 
     /// The cell of a node, from the planes above it.
@@ -426,32 +384,28 @@ impl<'s> KdTree<'s> {
     }
 
     /// The cells that are not divided, in the order of the tree.
-    pub fn leaves(&self) -> Vec<Leaf<'_>> {
-        let mut leaves = Vec::new();
+    pub fn leaves(&self) -> impl Iterator<Item = Leaf<'_>> {
         let mut pending = vec![(0, self.bounds)];
-        while let Some((index, cell)) = pending.pop() {
-            match self.nodes[index] {
-                Node::Inner { axis, above, split } => {
-                    let [below_cell, above_cell] = halves(cell, usize::from(axis), split);
-                    pending.push((above as usize, above_cell));
-                    pending.push((index + 1, below_cell));
+        std::iter::from_fn(move || {
+            loop {
+                let (index, bounds) = pending.pop()?;
+                match self.nodes[index] {
+                    Node::Leaf { first, count } => {
+                        return Some(Leaf { bounds, primitives: self.leaf(first, count) });
+                    }
+                    Node::Inner { axis, above, split } => {
+                        let [below_cell, above_cell] = halves(bounds, usize::from(axis), split);
+                        pending.push((above as usize, above_cell));
+                        pending.push((index + 1, below_cell));
+                    }
                 }
-                Node::Leaf { first, count } => leaves.push(Leaf {
-                    bounds: cell,
-                    primitives: &self.primitives[first as usize..][..count as usize],
-                }),
             }
-        }
-        leaves
+        })
     }
 
-    /// The cells that the search for the closest hit visits, in this order, as positions in
-    /// [`KdTree::leaves`].
-    pub fn visited_leaves(&self, ray: &Ray, range: Interval) -> Vec<usize> {
-        let mut visited = Vec::new();
-        self.walk_leaves(&Query::closest(*ray, range), &mut (), |node| visited.push(node));
-        let is_leaf = |node: &&Node| matches!(node, Node::Leaf { .. });
-        visited.iter().map(|&node| self.nodes[..node].iter().filter(is_leaf).count()).collect()
+    #[inline(always)]
+    fn leaf(&self, first: u32, count: u32) -> &[PrimitiveId] {
+        &self.primitives[first as usize..][..count as usize]
     }
 
     /// Checks that the tree is one: every node reached once, no deeper than allowed, planes inside
@@ -489,7 +443,7 @@ impl<'s> KdTree<'s> {
                         return Err(format!("leaf {index} does not follow the one before"));
                     }
                     next_primitive += count;
-                    let listed = &self.primitives[first as usize..][..count as usize];
+                    let listed = self.leaf(first, count);
                     if listed.windows(2).any(|pair| pair[0] >= pair[1]) {
                         return Err(format!("leaf {index} lists a primitive twice"));
                     }
@@ -522,7 +476,65 @@ impl Traversal for KdTree<'_> {
     /// Visits the cells along the ray until one holds a hit, or any will do.
     #[inline]
     fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
-        self.walk_leaves(query, observer, |_| {})
+        let &Query { ref ray, range, wanted } = query;
+        let descent = self.descent(ray, range)?;
+        search(descent, Probe::new(self.scene, ray, range), false, wanted, observer)
+    }
+}
+
+/// The leaves along a ray. Of what is still to be visited the nearest is last.
+struct Descent<'t> {
+    tree: &'t KdTree<'t>,
+    axes: [Thick; 3],
+    pending: Stack,
+    /// The leaf that came last.
+    at: usize,
+}
+
+impl<'t> RayCells<'t> for Descent<'t> {
+    #[inline(always)]
+    fn next<O: Observer>(
+        &mut self,
+        max: f64,
+        observer: &mut O,
+    ) -> Option<(f64, &'t [PrimitiveId])> {
+        let tree = self.tree;
+        let Pending { node, mut inside } = loop {
+            let pending = self.pending.pop()?;
+            if pending.inside.min * Slabs::NEAR <= max {
+                break pending;
+            }
+        };
+        inside.max = inside.max.min(max);
+        let mut index = node as usize;
+        loop {
+            observer.region(&|| tree.cell(index));
+            observer.cell_visit();
+            match tree.nodes[index] {
+                Node::Inner { axis, above, split } => {
+                    let axis = &self.axes[usize::from(axis)];
+                    let (below, above) = (index + 1, above as usize);
+                    let (near, far) = if axis.negative { (above, below) } else { (below, above) };
+                    index = match axis.divide(split, inside) {
+                        Sides::Near => near,
+                        Sides::Far => far,
+                        Sides::Both { near: first, far: later } => {
+                            self.pending.push(Pending { node: far as u32, inside: later });
+                            inside = first;
+                            near
+                        }
+                    };
+                }
+                Node::Leaf { first, count } => {
+                    self.at = index;
+                    return Some((inside.min, tree.leaf(first, count)));
+                }
+            }
+        }
+    }
+
+    fn bounds(&self) -> Bounds3 {
+        self.tree.cell(self.at)
     }
 }
 

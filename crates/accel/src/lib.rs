@@ -16,6 +16,7 @@ mod grid;
 #[cfg(test)]
 mod hard_sets;
 mod kd;
+mod margins;
 mod obvhs_bvh2;
 mod obvhs_cwbvh;
 mod octree;

@@ -6,8 +6,10 @@ use lancer_core::intersector::{Hit, Observer, Probe, Query, Traversal};
 use lancer_core::scene::{PrimitiveId, Scene, Subset};
 use smallvec::SmallVec;
 
-use crate::cells::{Cell, RayCells, search};
-use crate::touching::{Footprint, overlap, rounding, slack, surface_points};
+use crate::cells::{Cell, RayCells, search, visited};
+use crate::margins::{rounding, slack};
+use crate::spatial::Leaf;
+use crate::touching::{Footprint, overlap, surface_points};
 
 /// The octree, one of the slides' irregular subdivisions of space: a cube around the scene, cut into
 /// eight where too much lies in it.
@@ -190,14 +192,15 @@ impl<'s> Octree<'s> {
     }
 
     /// The leaves with their boxes, in depth-first order.
-    pub fn leaves(&self) -> impl Iterator<Item = (Bounds3, &[PrimitiveId])> {
+    pub fn leaves(&self) -> impl Iterator<Item = Leaf<'_>> {
         let mut pending = vec![(0, self.root)];
         std::iter::from_fn(move || {
             loop {
                 let (node, cube) = pending.pop()?;
                 match self.nodes[node] {
                     Node::Leaf(first, count) => {
-                        return Some((cube.bounds(), self.leaf(first, count)));
+                        let primitives = self.leaf(first, count);
+                        return Some(Leaf { bounds: cube.bounds(), primitives });
                     }
                     Node::Inner(first) => {
                         let part = |number| (first as usize + number, cube.part(number));
@@ -210,8 +213,7 @@ impl<'s> Octree<'s> {
 
     /// The leaves that a ray visits in `range`, near ones first, whether or not it hits anything in them.
     pub fn cells(&self, ray: &Ray, range: Interval) -> impl Iterator<Item = Cell<'_>> {
-        let mut descent = self.descent(ray, range);
-        std::iter::from_fn(move || descent.as_mut()?.next(range.max, &mut ()))
+        visited(self.descent(ray, range), range.max)
     }
 
     #[inline(always)]
@@ -231,7 +233,7 @@ impl<'s> Octree<'s> {
         if inside.min <= inside.max {
             pending.push(Visit { node: 0, cube: self.root, inside });
         }
-        Some(Descent { tree: self, line, pending })
+        Some(Descent { tree: self, line, pending, at: self.root })
     }
 
     /// Checks that every node is reached once and no deeper than the limit, that every one of these
@@ -373,6 +375,8 @@ struct Descent<'i> {
     tree: &'i Octree<'i>,
     line: Line,
     pending: SmallVec<[Visit; 32]>,
+    /// The leaf that came last.
+    at: Cube,
 }
 
 impl Descent<'_> {
@@ -400,7 +404,11 @@ impl Descent<'_> {
 
 impl<'i> RayCells<'i> for Descent<'i> {
     #[inline(always)]
-    fn next<O: Observer>(&mut self, max: f64, observer: &mut O) -> Option<Cell<'i>> {
+    fn next<O: Observer>(
+        &mut self,
+        max: f64,
+        observer: &mut O,
+    ) -> Option<(f64, &'i [PrimitiveId])> {
         loop {
             let Visit { node, cube, inside } = self.pending.pop()?;
             if inside.min * Slabs::NEAR > max {
@@ -411,10 +419,14 @@ impl<'i> RayCells<'i> for Descent<'i> {
             match self.tree.nodes[node as usize] {
                 Node::Inner(first) => self.open(first, cube, inside),
                 Node::Leaf(first, count) => {
-                    let primitives = self.tree.leaf(first, count);
-                    return Some(Cell { bounds: cube.bounds(), enter: inside.min, primitives });
+                    self.at = cube;
+                    return Some((inside.min, self.tree.leaf(first, count)));
                 }
             }
         }
+    }
+
+    fn bounds(&self) -> Bounds3 {
+        self.at.bounds()
     }
 }

@@ -1,12 +1,7 @@
 //! What the trees share that split space instead of sets of primitives.
-//!
-//! Space can be split exactly, rays and primitives cannot be computed exactly. A primitive may be met
-//! a rounding error beside itself, and then it must still be found in the cell where it was met. So
-//! a primitive is entered into every cell that it comes near, within [`margin`], and a ray
-//! visits a cell a little before it gets there and until a little after, within [`thickness`].
 
 use glam::DVec3;
-use lancer_core::geometry::{Bounds3, Ray};
+use lancer_core::geometry::Bounds3;
 use lancer_core::scene::PrimitiveId;
 use smallvec::SmallVec;
 
@@ -19,26 +14,9 @@ pub struct Leaf<'t> {
     pub primitives: &'t [PrimitiveId],
 }
 
-/// A primitive may be met this much beside its bounds because of their own rounding: clipping it
-/// takes a dozen operations on numbers of its size.
-pub(crate) fn margin(bounds: Bounds3) -> f64 {
-    let farthest = bounds.min.abs().max(bounds.max.abs()).max_element();
-    16.0 * f64::EPSILON * (farthest + (bounds.max - bounds.min).max_element())
-}
-
 /// What two boxes have in common.
 pub(crate) fn common(a: Bounds3, b: Bounds3) -> Bounds3 {
     Bounds3 { min: a.min.max(b.min), max: a.max.min(b.max) }
-}
-
-/// A ray is taken for this thick: it may meet a primitive that much beside the place where it passes.
-///
-/// Rounding moves a ray by a few ε of the way it goes, at most to the far end of the scene's box. Of
-/// two primitives met at the same t one may so seem to be in a cell that the ray reaches later; the
-/// factor is the one of [`lancer_core::geometry::Slabs`], measured there to lose no such tie.
-pub(crate) fn thickness(ray: &Ray, scene: Bounds3) -> f64 {
-    let reach = (scene.min - ray.origin).abs().max((scene.max - ray.origin).abs());
-    256.0 * f64::EPSILON * reach.max_element()
 }
 
 /// The deepest a tree over `primitives` primitives may be, after Havran, *Heuristic Ray Shooting

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
-use lancer_accel::{BspTree, Cell, Grid, KdBuilder, OctreeBuilder};
+use lancer_accel::{BspTree, Cell, Grid, KdBuilder, Leaf, OctreeBuilder};
 use lancer_core::geometry::{Bounds3, Interval, Ray};
 use lancer_core::intersector::{Hit, Intersector, LinearScan, Query, TestCounts};
 use lancer_core::sampling::Uniform;
@@ -131,6 +131,11 @@ fn parts<'c>(cell: Cell<'c>) -> (Bounds3, &'c [PrimitiveId]) {
     (cell.bounds, cell.primitives)
 }
 
+/// The same of a leaf.
+fn leaf<'t>(leaf: Leaf<'t>) -> (Bounds3, &'t [PrimitiveId]) {
+    (leaf.bounds, leaf.primitives)
+}
+
 /// The cells of a binary space partition in the plan: convex, so that the farthest of their points in many
 /// directions outline them.
 fn outlines(tree: &BspTree, bounds: Bounds3, steps: u32) -> BTreeMap<usize, Region> {
@@ -197,15 +202,10 @@ pub fn make(effort: Effort) -> Finished {
     let cells = rows.iter().flat_map(|ray| grid.cells(ray, Interval::POSITIVE)).map(parts);
     let grid_regions = [regions(cells), regions(grid.cells(&ray, range).map(parts))];
     let octree = OctreeBuilder { leaf_size: 2, ..OctreeBuilder::default() }.build(&scene);
-    let octree_regions = [regions(octree.leaves()), regions(octree.cells(&ray, range).map(parts))];
+    let octree_regions =
+        [regions(octree.leaves().map(leaf)), regions(octree.cells(&ray, range).map(parts))];
     let kd = KdBuilder { test_cost: 2.0, ..KdBuilder::default() }.build(&scene);
-    let leaves = kd.leaves();
-    let visited = kd.visited_leaves(&ray, Interval::POSITIVE).into_iter().map(|leaf| leaves[leaf]);
-    let of_leaf = |leaf: lancer_accel::Leaf<'_>| region(leaf.bounds, leaf.primitives.len());
-    let kd_regions = [
-        leaves.iter().copied().filter_map(of_leaf).collect(),
-        visited.filter_map(of_leaf).collect(),
-    ];
+    let kd_regions = [regions(kd.leaves().map(leaf)), regions(kd.cells(&ray, range).map(parts))];
     let bsp = BspTree::build(&scene);
     let cells = outlines(&bsp, bounds, effort.pick(150, 500));
     let visited = bsp.visited_leaves(&ray, Interval::POSITIVE).into_iter();

@@ -1,10 +1,11 @@
 use std::collections::BTreeSet;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use lancer_core::generate::{icosphere, sphere_flake};
 use lancer_core::geometry::{Bounds3, ConvexVolume, Interval, Ray, Sphere};
+use lancer_core::image::ImageSize;
 use lancer_core::intersector::{BeamIndex, Intersector, LinearScan, TestCounts};
-use lancer_core::scene::{MaterialId, PrimitiveId, Scene, Shape, SphereObject, Subset};
+use lancer_core::scene::{Camera, MaterialId, PrimitiveId, Scene, Shape, SphereObject, Subset};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 
@@ -167,9 +168,8 @@ fn what_touches_a_beam_is_found() {
                 2 => vec![at(0, 0), at(1, 0), at(0, 1)],
                 _ => vec![at(0, 0), at(1, 0), at(1, 1), at(0, 1)],
             };
-            let points: Vec<DVec3> = window.iter().copied().map(real).collect();
-            let volume =
-                ConvexVolume::pyramid(Ray::new(real(apex), points[0] - real(apex)), &points);
+            let edges: Vec<DVec3> = window.iter().map(|&corner| real(sub(corner, apex))).collect();
+            let volume = ConvexVolume::pyramid(Ray::new(real(apex), edges[0]), &edges);
             let [all, ours] = agree(&scene, &indexes, &volume, f64::INFINITY);
             let inside = |p: DVec3| volume.may_meet(&Bounds3 { min: p, max: p });
             for (k, triangle) in corners.iter().enumerate() {
@@ -213,12 +213,13 @@ fn beams(scene: &Scene, count: u32) -> Vec<(ConvexVolume, Vec<Ray>)> {
                 1 => vec![target - u, target + u],
                 _ => vec![target - u - v, target + u - v, target + u + v, target - u + v],
             };
-            let volume = ConvexVolume::pyramid(Ray::new(apex, target - apex), &window);
+            let edges: Vec<DVec3> = window.iter().map(|&corner| corner - apex).collect();
+            let volume = ConvexVolume::pyramid(Ray::new(apex, target - apex), &edges);
             // Rays of a flat beam would leave it by their rounding.
             let rays = (0..if window.len() == 4 { 16 } else { 0 }).map(|_| {
-                let middle = window.iter().map(|&corner| (number(), corner));
-                let (weight, sum) = middle.fold((0.0, DVec3::ZERO), |(w, sum), (part, corner)| {
-                    (w + part, sum + part * (corner - apex))
+                let middle = edges.iter().map(|&edge| (number(), edge));
+                let (weight, sum) = middle.fold((0.0, DVec3::ZERO), |(w, sum), (part, edge)| {
+                    (w + part, sum + part * edge)
                 });
                 Ray::new(apex, sum / weight)
             });
@@ -276,6 +277,56 @@ fn spheres_are_found() {
     assert!(hits > 500, "{hits}");
 }
 
+/// Rays in the border of a pixel, and triangles that touch it from outside, with a corner where the ray
+/// passes: the eye at the origin and far away, the scene along with it. A pyramid through the points eye +
+/// direction has lost the last digits of its directions, and misses what the ray hits.
+#[test]
+fn a_beam_finds_what_the_rays_in_its_border_hit() {
+    const SIZE: u32 = 128;
+    for (far, by_points_misses) in [(0.0, 0..1), (1e4, 100..2000), (1e8, 100..2000)] {
+        let eye = far * DVec3::new(1.0, -2.0, 3.0);
+        let toward = DVec3::new(-0.3, 0.2, 0.9);
+        let camera = Camera { eye, look_at: eye + toward, up: DVec3::Y, fov: 40.0 };
+        let rays = camera.primary_rays(ImageSize::new(SIZE, SIZE));
+        let mut random = Pcg64::new(19, 1);
+        let mut number = move || f64::from(random.next_u32()) / f64::from(u32::MAX);
+        let mut corners = Vec::new();
+        let mut pixels = Vec::new();
+        for k in 0..SIZE / 2 * (SIZE / 4) {
+            // Every other pixel of every fourth row.
+            let [x, y] = [2 * (k % (SIZE / 2)), 4 * (k / (SIZE / 2)) + 2].map(f64::from);
+            let along = x + 0.1 + 0.8 * number();
+            let [distance, slope] = [3.0 + number(), 0.1 * number()];
+            let at = |x, y, distance| rays.through(x, y).at(distance);
+            corners.push([
+                at(along, y, distance),
+                at(along + 0.3, y - 0.8, distance - slope),
+                at(along - 0.4, y - 0.7, distance + slope),
+            ]);
+            pixels.push((DVec2::new(x, y), rays.through(along, y)));
+        }
+        let scene = triangles(corners);
+        let indexes = Indexes::build(&scene);
+        let [mut hits, mut missed] = [0; 2];
+        for (low, ray) in pixels {
+            let Some(hit) = indexes.linear.closest_hit(&ray, Interval::POSITIVE) else { continue };
+            hits += 1;
+            let beam = rays.beam(low, low + 1.0);
+            for found in agree(&scene, &indexes, &beam, f64::INFINITY) {
+                assert!(found.contains(&hit.primitive), "{far}: {ray:?} {hit:?}");
+            }
+            let window = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+            let by_points = window.map(|(x, y)| {
+                let direction = rays.through(low.x + x, low.y + y).direction;
+                (eye + direction) - eye
+            });
+            let by_points = ConvexVolume::pyramid(beam.axis(), &by_points);
+            missed += usize::from(scene.depth_in(&by_points, hit.primitive).is_none());
+        }
+        assert!(hits > 300 && by_points_misses.contains(&missed), "{far}: {missed} of {hits}");
+    }
+}
+
 /// Over a subset a beam finds what of all it finds is in the subset.
 #[test]
 fn a_subset_is_searched() {
@@ -305,8 +356,8 @@ fn a_subset_is_searched() {
 fn a_bound_saves_work() {
     let scene = Scene::of_mesh(icosphere(5));
     let eye = DVec3::new(4.0, 3.0, 2.0);
-    let window = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| 0.1 * (axis - DVec3::ONE / 3.0));
-    let volume = ConvexVolume::pyramid(Ray::new(eye, -eye), &window);
+    let edges = DVec3::AXES.map(|axis| 0.1 * (axis - DVec3::ONE / 3.0) - eye);
+    let volume = ConvexVolume::pyramid(Ray::new(eye, -eye), &edges);
     let middle = eye.length();
     let search = |index: &dyn BeamIndex, bounded: bool| {
         let (mut counts, mut seen) = (TestCounts::default(), Vec::new());

@@ -30,7 +30,7 @@ impl BeamTraversal for Grid<'_> {
             |front, [low, high], depth| {
                 if low == high {
                     front.cell();
-                    for &primitive in self.cell(low, depth).primitives {
+                    for &primitive in self.row(low) {
                         if tested.insert(primitive) {
                             front.primitive(primitive, depth);
                         }

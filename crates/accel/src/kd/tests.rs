@@ -33,7 +33,7 @@ fn the_cell_of_a_leaf_is_found_from_the_root() {
     let is_leaf = |&node: &usize| matches!(tree.nodes[node], Node::Leaf { .. });
     let cells: Vec<Bounds3> =
         (0..tree.nodes.len()).filter(is_leaf).map(|node| tree.cell(node)).collect();
-    let leaves: Vec<Bounds3> = tree.leaves().iter().map(|leaf| leaf.bounds).collect();
+    let leaves: Vec<Bounds3> = tree.leaves().map(|leaf| leaf.bounds).collect();
     assert!(leaves.len() > 100);
     assert_eq!(cells, leaves);
 }
@@ -81,18 +81,16 @@ fn a_ray_in_the_plane_visits_both_sides() {
 fn the_first_hit_found_is_not_the_closest() {
     let scene = Scene::of_mesh(hard::soup(300, 1.0));
     let tree = KdTree::build(&scene);
-    let leaves = tree.leaves();
     let mut wrong = 0;
     for ray in rays(5000) {
         let wanted = tree.closest_hit(&ray, Interval::POSITIVE);
-        let in_leaf = |&leaf: &usize| {
+        let naive = tree.cells(&ray, Interval::POSITIVE).find_map(|cell| {
             let mut probe = Probe::new(&scene, &ray, Interval::POSITIVE);
-            leaves[leaf].primitives.iter().for_each(|&primitive| {
+            cell.primitives.iter().for_each(|&primitive| {
                 probe.test(primitive);
             });
             probe.best()
-        };
-        let naive = tree.visited_leaves(&ray, Interval::POSITIVE).iter().find_map(in_leaf);
+        });
         wrong += usize::from(naive != wanted);
     }
     assert!(wrong > 50, "{wrong}");
@@ -102,20 +100,20 @@ fn the_first_hit_found_is_not_the_closest() {
 fn leaves_fill_the_box_and_are_visited_in_order() {
     let scene = Scene::of_mesh(icosphere(4));
     let tree = KdTree::build(&scene);
-    let leaves = tree.leaves();
     let volume = |b: Bounds3| (b.max - b.min).element_product();
-    let sum: f64 = leaves.iter().map(|leaf| volume(leaf.bounds)).sum();
+    let sum: f64 = tree.leaves().map(|leaf| volume(leaf.bounds)).sum();
     assert!((sum / volume(tree.bounds) - 1.0).abs() < 1e-9, "{sum}");
     for ray in rays(200) {
-        let visited = tree.visited_leaves(&ray, Interval::POSITIVE);
-        let enter = |&leaf: &usize| {
-            let Bounds3 { min, max } = leaves[leaf].bounds.grown(1e-12);
-            Slabs::new(&ray).enter(min, max, Interval::POSITIVE).expect("visited: met")
-        };
-        let entered: Vec<f64> = visited.iter().map(enter).collect();
-        assert!(entered.windows(2).all(|pair| pair[0] <= pair[1] + 1e-9), "{entered:?}");
-        let unique: std::collections::HashSet<_> = visited.iter().collect();
-        assert_eq!(unique.len(), visited.len(), "no cell twice");
+        let cells: Vec<Cell> = tree.cells(&ray, Interval::POSITIVE).collect();
+        for cell in &cells {
+            let Bounds3 { min, max } = cell.bounds.grown(1e-12);
+            let enter = Slabs::new(&ray).enter(min, max, Interval::POSITIVE).expect("visited: met");
+            assert!((cell.enter - enter).abs() <= 1e-9 * (1.0 + enter), "{} {enter}", cell.enter);
+        }
+        assert!(cells.is_sorted_by(|a, b| a.enter <= b.enter), "{cells:?}");
+        let distinct =
+            |(k, cell): (usize, &Cell)| cells[..k].iter().all(|c| c.bounds != cell.bounds);
+        assert!(cells.iter().enumerate().all(distinct), "no cell twice");
     }
 }
 
@@ -141,5 +139,5 @@ fn any_number_of_threads_builds_the_same_tree() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| KdTree::build(&scene))
     });
-    assert_eq!(one.leaves(), three.leaves());
+    assert!(one.leaves().eq(three.leaves()));
 }

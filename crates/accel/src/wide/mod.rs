@@ -25,6 +25,15 @@ use lanes::avx2::Avx2;
 /// *Built* from the binary tree of [`crate::Bvh`], grown down to single primitives, by the cheapest
 /// collapse (dynamic programming): a node takes in up to eight descendants, a leaf up to eight triangles.
 ///
+/// *Walked* near to far: eight boxes, then eight triangles are tested together. Rays of one origin are walked
+/// as a packet.
+///
+/// *Wins* on every ray where the processor has vectors of eight. *Loses* without them, and to
+/// [`crate::ObvhsCwbvh`] in memory.
+///
+/// *Sources:* Wald, Benthin and Boulos, *Getting Rid of Packets: Efficient SIMD Single-Ray Traversal using
+/// Multi-branching BVHs*, RT 2008; the collapse: Ylitie, Karras and Laine, HPG 2017.
+///
 /// ```text
 /// node, 256 bytes     lowest x [8]  highest x [8]  lowest y [8]  …  highest z [8]   f32, rounded outwards
 ///                     child [8]     a node, or a leaf and its number of primitives
@@ -53,43 +62,7 @@ use lanes::avx2::Avx2;
 ///   that it is known to pass.
 /// - Rays of one origin are walked as a packet, [`Intersector::closest_hits`]; what that gains is plate 4.9's.
 ///
-/// # The bounds
-///
-/// With C = a − o, N = f × e, R = C × d the ray o + t d meets the plane at t = T / Δ with the weights U / Δ
-/// and V / Δ (Möller and Trumbore), where
-///
-/// ```text
-/// Δ = N·d     T = N·C     U = R·f     V = R·e     W = Δ − U − V
-/// ```
-///
-/// Let u = 2⁻²⁴, D = 1 + |o|, c = |C|, δ = |d| and s = the longest edge component, all in the maximum
-/// norm. Rounding a, o, and their difference moves C by u (D + c); e and f were rounded from exact differences
-/// and are off by u s, d by u δ. To first order in u, without any fused rounding, each product's operands and
-/// the operations themselves add:
-///
-/// ```text
-/// R   ≤ 2 c δ      off by  2 u δ (D + 2 c) + 4 u c δ                         =  u δ (2 D + 8 c)
-/// U,V ≤ 6 c δ s    off by  3 u δ s (2 D + 8 c) + 3 · 2 u c δ s + 18 u c δ s  =  u δ s (6 D + 48 c)
-/// N   ≤ 2 s²       off by  2 · 2 u s² + 4 u s²                               =  8 u s²
-/// Δ   ≤ 6 s² δ     off by  3 (8 + 2) u s² δ + 18 u s² δ                      =  48 u s² δ
-/// T   ≤ 6 s² c     off by  3 · 8 u s² c + 3 · 2 u s² (D + c) + 18 u s² c     =  u s² (6 D + 48 c)
-/// W                off by  2 (6 D + 48 c) + 48 s, and (6 s + 6 c) + (6 s + 12 c)
-///                          for two differences                               =  u δ s (12 D + 114 c + 60 s)
-/// ```
-///
-/// so with p = u (16 D + 128 c + 64 s), e = δ s p, e_Δ = 64 u s² δ and e_T = s² p / 2 whatever has
-/// U, V, W ≥ 0 is kept by U, V, W ≥ −e, and U, V, W > e, T > e_T, |Δ| > 2 e_Δ imply a true hit. All four are
-/// turned by the sign of Δ, which is wrong only where |Δ| ≤ 48 u s² δ. Then a true hit has U and V no larger
-/// than that, which e covers (and W = |Δ| + U + V), and T = t Δ no larger than 48 u s² (c + s), since no point
-/// of the triangle is farther than c + s: so T is kept from −2 e_T on. The part
-/// with c lets what is near be small: a teapot in a stadium is told apart from its neighbours' triangles.
-///
-/// The slack beyond first order, and the noise of the `f64` test (2⁻²⁹ of the above in U, V, W; of t its own
-/// bound dt, below which it refuses, is at most 240 · 2⁻⁵³ c² s / Δ) are covered because s is at least 2⁻²⁰:
-/// of e_T a part of u s² (2 D + 16 c + 32 s) is free, four times dt where c ≤ 10. An origin beyond 8 is moved
-/// close to the scene, which adds its rounding to D; then t is at least 7 / δ, above dt since |Δ| > 2 e_Δ. From
-/// beyond 16, of directions of extreme length and in scenes of extreme size, where `f64` itself under- or
-/// overflows, no hit is called certain.
+#[doc = include_str!("bounds.md")]
 pub struct Wide<'s> {
     scene: &'s Scene,
     frame: Frame,

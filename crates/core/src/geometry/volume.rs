@@ -1,4 +1,5 @@
 use glam::DVec3;
+use smallvec::SmallVec;
 
 use super::{Bounds3, Ray, gamma};
 
@@ -19,7 +20,8 @@ pub struct HalfSpace {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConvexVolume {
     axis: Ray,
-    half_spaces: Vec<HalfSpace>,
+    /// Those of a pyramid over a quadrilateral, and what it is cut by, need no allocation.
+    half_spaces: SmallVec<[HalfSpace; 16]>,
 }
 
 /// By how much a sign that rounding decides may be wrong, for a product of unit vectors.
@@ -36,32 +38,91 @@ impl ConvexVolume {
         Self { axis: Ray { direction, ..axis }, half_spaces }
     }
 
-    /// The pyramid of all rays from the axis' origin, its apex, through a convex polygon, whose corners
-    /// are given in order, either way round. It has no end. It may be flat or a single line; through no
-    /// corner it is the apex. Seen from the apex the corners must lie well within a half-space: otherwise
-    /// the volume is larger than the pyramid.
+    /// The pyramid of all rays from the axis' origin, its apex, between these directions, which are given in
+    /// order, either way round, in any length. It has no end. It may be flat or a single line; without a
+    /// direction it is the apex. The directions must lie well within a half-space: otherwise the volume is
+    /// larger than the pyramid.
+    ///
+    /// Directions, not points: far from the origin a point seen from the apex has lost its last digits, and
+    /// a ray in the pyramid's border would lie outside.
     ///
     /// Beside its faces it gets all half-spaces that the separating axis theorem asks for: two convex
     /// bodies are disjoint if and only if there is a gap along a normal of a face of one, or along the
     /// product of an edge of each. The edges of boxes are known beforehand, so a box beside the pyramid is
     /// refused unless the gap is down to rounding.
-    pub fn pyramid(axis: Ray, corners: &[DVec3]) -> Self {
-        let apex = axis.origin;
-        let edges: Vec<DVec3> = corners.iter().map(|&corner| direction(corner - apex)).collect();
+    pub fn pyramid(axis: Ray, directions: &[DVec3]) -> Self {
+        let mut volume = Self::of_half_spaces(axis, []);
+        // A direction of no length is in every half-space.
+        let directions = directions.iter().filter(|&&edge| edge != DVec3::ZERO);
+        let edges: SmallVec<[DVec3; 4]> = directions.map(|&edge| unit(edge)).collect();
         let inwards = edges.iter().sum::<DVec3>().normalize_or_zero();
-        let faces = (0..edges.len()).map(|k| {
-            let (edge, next) = (edges[k], edges[(k + 1) % edges.len()]);
+        // How much tilt moves an edge inwards by 1.
+        let per_inside: SmallVec<[f64; 4]> =
+            edges.iter().map(|&edge| inwards.dot(edge).recip()).collect();
+        if !per_inside.iter().all(|tilt| (0.0..1e6).contains(tilt)) {
+            return volume;
+        }
+        let mut consider = |normal: DVec3| {
+            let squared = normal.length_squared();
+            if squared == 0.0 {
+                return;
+            }
+            let (mut least, mut most) = (0.0_f64, 0.0_f64);
+            for edge in &edges {
+                let beyond = normal.dot(*edge);
+                least = if beyond < least { beyond } else { least };
+                most = if beyond > most { beyond } else { most };
+            }
+            // Most normals support nothing: they need no root.
+            let doubt = DOUBT * DOUBT * squared;
+            if most * most <= doubt {
+                volume.support(normal, &edges, &per_inside, inwards);
+            }
+            if least * least <= doubt {
+                volume.support(-normal, &edges, &per_inside, inwards);
+            }
+        };
+        for (k, &edge) in edges.iter().enumerate() {
             // Not edge × next, whose rounding leaves the plane of a narrow face.
-            edge.cross(next - edge)
-        });
-        let silhouettes = edges.iter().flat_map(|edge| DVec3::AXES.map(|axis| edge.cross(axis)));
-        let half_spaces = faces
-            .chain(silhouettes)
-            .chain(DVec3::AXES)
-            .flat_map(|normal| [normal, -normal])
-            .filter_map(|normal| supporting(normal, &edges, inwards))
-            .map(|normal| HalfSpace { normal, point: apex });
-        Self::of_half_spaces(axis, half_spaces)
+            consider(edge.cross(edges[(k + 1) % edges.len()] - edge));
+        }
+        DVec3::AXES.into_iter().for_each(&mut consider);
+        for axis in 0..if edges.is_empty() { 0 } else { 3 } {
+            // Seen along the axis, only the outermost edges can have all others on one side.
+            let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+            let (mut first, mut last) = (edges[0], edges[0]);
+            for &edge in &edges[1..] {
+                if first[u] * edge[v] < first[v] * edge[u] {
+                    first = edge;
+                } else if last[u] * edge[v] > last[v] * edge[u] {
+                    last = edge;
+                }
+            }
+            consider(first.cross(DVec3::AXES[axis]));
+            consider(last.cross(DVec3::AXES[axis]));
+        }
+        volume
+    }
+
+    /// Adds the half-space through the apex at a normal n, up to rounding, that holds all edges of a pyramid,
+    /// unless it is there already.
+    ///
+    /// The rounded normal may cut an edge off. It is tilted inwards, n − β·inwards, until n·edge ≤ 0 holds
+    /// for all of them, the rounding of the edges themselves included: so the exact pyramid is inside.
+    fn support(&mut self, normal: DVec3, edges: &[DVec3], per_inside: &[f64], inwards: DVec3) {
+        let normal = normal.normalize();
+        let tilts = edges
+            .iter()
+            .zip(per_inside)
+            .map(|(edge, per_inside)| (normal.dot(*edge) + DOUBT) * per_inside);
+        let normal = normal - tilts.fold(0.0, f64::max) * inwards;
+        let close = |a: f64, b: f64| (a - b).abs() <= 4.0 * f64::EPSILON;
+        let is_same = |HalfSpace { normal: n, .. }: &HalfSpace| {
+            close(n.x, normal.x) && close(n.y, normal.y) && close(n.z, normal.z)
+        };
+        if !self.half_spaces.iter().any(is_same) {
+            self.half_spaces.push(HalfSpace { normal, point: self.axis.origin });
+        }
     }
 
     /// What of the volume lies in a half-space: in front of a receiver, or behind a mirror.
@@ -116,30 +177,8 @@ fn known(depth: f64) -> f64 {
 }
 
 /// The unit vector of v, without overflow or underflow on the way; of nothing nothing.
-fn direction(v: DVec3) -> DVec3 {
+fn unit(v: DVec3) -> DVec3 {
     if v == DVec3::ZERO { v } else { (v / v.abs().max_element()).normalize() }
-}
-
-/// The normal of a half-space through the apex that holds all edges of a pyramid, if there is one at that
-/// normal up to rounding.
-///
-/// The rounded normal may cut an edge off. It is tilted inwards, n − β·inwards, until n·edge ≤ 0 holds for
-/// all of them, the rounding of the edges themselves included: so the exact pyramid is inside.
-fn supporting(normal: DVec3, edges: &[DVec3], inwards: DVec3) -> Option<DVec3> {
-    let normal = normal.try_normalize()?;
-    let mut tilt = 0.0_f64;
-    for edge in edges {
-        let (beyond, inside) = (normal.dot(*edge), inwards.dot(*edge));
-        let holds = beyond <= DOUBT;
-        // An edge of no length, at a corner in the apex, is in every half-space.
-        if *edge != DVec3::ZERO {
-            if !holds || inside <= 1e-6 {
-                return None;
-            }
-            tilt = tilt.max((beyond + DOUBT) / inside);
-        }
-    }
-    Some(normal - tilt * inwards)
 }
 
 /// A lower bound of n·(p − a).
@@ -251,9 +290,10 @@ mod tests {
         {
             let [mut met, mut let_in, mut by_corner, mut by_center] = [0; 4];
             for Case { apex, corners, low, high } in cases(40_000, place) {
-                let points: Vec<DVec3> = corners.iter().map(|&c| real(c, scale)).collect();
                 let origin = real(apex, scale);
-                let volume = ConvexVolume::pyramid(Ray::new(origin, points[0] - origin), &points);
+                let edges: Vec<DVec3> =
+                    corners.iter().map(|&corner| real(sub(corner, apex), scale)).collect();
+                let volume = ConvexVolume::pyramid(Ray::new(origin, edges[0]), &edges);
                 let bounds = Bounds3 { min: real(low, scale), max: real(high, scale) };
                 let (exact, ours) =
                     (exactly_meet(apex, &corners, low, high), volume.may_meet(&bounds));
@@ -305,7 +345,8 @@ mod tests {
         for _ in 0..20_000 {
             let mut point = || DVec3::new(number(), number(), number());
             let (origin, corners) = (point(), [point(), point(), point()]);
-            let volume = ConvexVolume::pyramid(Ray::new(origin, corners[0] - origin), &corners);
+            let edges = corners.map(|corner| corner - origin);
+            let volume = ConvexVolume::pyramid(Ray::new(origin, edges[0]), &edges);
             let small = Bounds3::of_points([point(), point()]);
             let large = small.union(Bounds3::of_points([point()]));
             let around = Bounds3::of_points(corners);
@@ -370,8 +411,9 @@ mod tests {
             [DVec3::X, DVec3::NEG_X].map(|normal| HalfSpace { normal, point: -2.0 * normal });
         assert!(!ConvexVolume::of_half_spaces(axis, contradiction).may_meet(&unit));
         for bad in [f64::NAN, f64::INFINITY, 1e308] {
-            let corners = [DVec3::X, DVec3::splat(bad), DVec3::Y];
-            let volume = ConvexVolume::pyramid(Ray::new(DVec3::splat(-bad), DVec3::X), &corners);
+            let directions = [DVec3::X, DVec3::splat(bad), DVec3::Y];
+            let axis = Ray::new(DVec3::splat(-bad), DVec3::X);
+            let volume = ConvexVolume::pyramid(axis, &directions);
             assert!(volume.may_meet(&unit));
             assert!(!volume.depth(&unit).is_nan());
             let bounds = Bounds3 { min: DVec3::NEG_ONE, max: DVec3::splat(bad) };

@@ -25,14 +25,11 @@ impl Camera {
         let half_height = (0.5 * self.fov.to_radians()).tan();
         let pixel = 2.0 * half_height / f64::from(size.height);
         let (across, down) = (right * pixel, -up * pixel);
-        PrimaryRays {
-            eye: self.eye,
-            corner: forward
-                - across * (0.5 * f64::from(size.width))
-                - down * (0.5 * f64::from(size.height)),
-            across,
-            down,
-        }
+        let corner = forward
+            - across * (0.5 * f64::from(size.width))
+            - down * (0.5 * f64::from(size.height));
+        let to_film = DMat3::from_cols(across, down, corner).inverse();
+        PrimaryRays { eye: self.eye, corner, across, down, to_film }
     }
 }
 
@@ -44,6 +41,8 @@ pub struct PrimaryRays {
     corner: DVec3,
     across: DVec3,
     down: DVec3,
+    /// The inverse of (x, y, z) ↦ x · across + y · down + z · corner.
+    to_film: DMat3,
 }
 
 impl PrimaryRays {
@@ -58,17 +57,15 @@ impl PrimaryRays {
     /// [`PrimaryRays::through`]. Depth is measured along the view axis, for all beams of a picture alike.
     pub fn beam(&self, low: DVec2, high: DVec2) -> ConvexVolume {
         let corners = [(low.x, low.y), (high.x, low.y), (high.x, high.y), (low.x, high.y)];
-        let corners =
-            corners.map(|(x, y)| self.eye + self.corner + x * self.across + y * self.down);
-        ConvexVolume::pyramid(Ray::new(self.eye, self.across.cross(self.down)), &corners)
+        let directions = corners.map(|(x, y)| self.corner + x * self.across + y * self.down);
+        ConvexVolume::pyramid(Ray::new(self.eye, self.across.cross(self.down)), &directions)
     }
 
     /// Where on the film a point of the world is seen, in pixels as for [`PrimaryRays::through`], beyond
     /// the picture's edges as well; `None` for a point that is not in front of the eye.
     pub fn film_point(&self, point: DVec3) -> Option<DVec2> {
-        let basis = DMat3::from_cols(self.across, self.down, self.corner);
         // point − eye = depth · (x · across + y · down + corner)
-        let film = basis.inverse() * (point - self.eye);
+        let film = self.to_film * (point - self.eye);
         (film.z > 0.0).then(|| film.truncate() / film.z)
     }
 
