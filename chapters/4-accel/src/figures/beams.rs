@@ -93,166 +93,202 @@ struct Case {
     tests: f64,
 }
 
-pub fn make(effort: Effort) -> Finished {
-    let sizes: &[u32] = effort.pick(&[1_000, 10_000], &[100, 1_000, 10_000, 100_000]);
-    let a_row = effort.pick(4, 8);
-    let columns = ["beams", "met", "tests", "boxes", "cells", "hits_lost", "unlike_linear"];
-    let keys = ["scene", "triangles", "window", "index", "bound"];
-    let mut data = Table::new(keys.into_iter().chain(columns));
-    let mut cases = Vec::new();
-    let (mut lost, mut unlike) = (0, 0);
-    for scene_name in SCENES {
-        for &size in sizes {
-            let scene = family(scene_name).scene(size);
-            let triangles = scene.mesh.triangles.len();
-            let (linear, bvh, grid) =
-                (LinearScan::new(&scene), Bvh::build(&scene), Grid::build(&scene));
-            let indexes: [&dyn BeamIndex; 3] = [&linear, &bvh, &grid];
-            let rays = scene.camera.primary_rays(SIZE);
-            for window in WINDOWS {
-                let beams = beams(&rays, window, a_row, &bvh);
-                let mut wanted: Vec<Vec<PrimitiveId>> = Vec::new();
-                for bounded in [false, true] {
-                    // Brute force tests as many with a bound: what it finds is where its list begins.
-                    let asked = INDEXES.into_iter().zip(indexes).skip(usize::from(bounded));
-                    for (index_name, index) in asked {
-                        let mut counts = TestCounts::default();
-                        let search = |beam: &Beam| {
-                            let far = if bounded { beam.seen } else { f64::INFINITY };
-                            beam.search(index, far, &mut counts)
-                        };
-                        let found: Vec<Vec<PrimitiveId>> = beams.iter().map(search).collect();
-                        let hits_lost: usize =
-                            beams.iter().zip(&found).map(|(b, f)| b.lost(f)).sum();
-                        if index_name == "linear" {
-                            wanted.clone_from(&found);
+/// What was measured: all cases, their table, and the wrong answers in it.
+struct Measured {
+    cases: Vec<Case>,
+    data: Table,
+    /// Polygons that a ray of a beam hit and an index had not found.
+    lost: usize,
+    /// Beams in which the hierarchy differs from brute force.
+    unlike: usize,
+}
+
+impl Measured {
+    fn new(sizes: &[u32], a_row: u32) -> Self {
+        let columns = ["beams", "met", "tests", "boxes", "cells", "hits_lost", "unlike_linear"];
+        let keys = ["scene", "triangles", "window", "index", "bound"];
+        let data = Table::new(keys.into_iter().chain(columns));
+        let mut measured = Self { cases: Vec::new(), data, lost: 0, unlike: 0 };
+        for scene_name in SCENES {
+            for &size in sizes {
+                let scene = family(scene_name).scene(size);
+                let triangles = scene.mesh.triangles.len();
+                let (linear, bvh, grid) =
+                    (LinearScan::new(&scene), Bvh::build(&scene), Grid::build(&scene));
+                let indexes: [&dyn BeamIndex; 3] = [&linear, &bvh, &grid];
+                let rays = scene.camera.primary_rays(SIZE);
+                for window in WINDOWS {
+                    let beams = beams(&rays, window, a_row, &bvh);
+                    let mut wanted: Vec<Vec<PrimitiveId>> = Vec::new();
+                    for bounded in [false, true] {
+                        // Brute force tests as many with a bound: what it finds is where its list begins.
+                        let asked = INDEXES.into_iter().zip(indexes).skip(usize::from(bounded));
+                        for (index_name, index) in asked {
+                            let mut counts = TestCounts::default();
+                            let search = |beam: &Beam| {
+                                let far = if bounded { beam.seen } else { f64::INFINITY };
+                                beam.search(index, far, &mut counts)
+                            };
+                            let found: Vec<Vec<PrimitiveId>> = beams.iter().map(search).collect();
+                            let hits_lost: usize =
+                                beams.iter().zip(&found).map(|(b, f)| b.lost(f)).sum();
+                            if index_name == "linear" {
+                                wanted.clone_from(&found);
+                            }
+                            let unlike_linear = found
+                                .iter()
+                                .zip(&wanted)
+                                .filter(|(found, all)| match bounded {
+                                    true => !all.starts_with(found),
+                                    false => found != all,
+                                })
+                                .count();
+                            measured.lost += hits_lost;
+                            measured.unlike += if index_name == "bvh" { unlike_linear } else { 0 };
+                            let per_beam = |count: u64| count as f64 / beams.len() as f64;
+                            let met = per_beam(found.iter().map(Vec::len).sum::<usize>() as u64);
+                            let tests = per_beam(counts.primitives);
+                            measured.data.push([
+                                scene_name.into(),
+                                triangles.into(),
+                                window.into(),
+                                index_name.into(),
+                                if bounded { "seen" } else { "none" }.into(),
+                                beams.len().into(),
+                                met.into(),
+                                tests.into(),
+                                per_beam(counts.boxes).into(),
+                                per_beam(counts.cells).into(),
+                                hits_lost.into(),
+                                unlike_linear.into(),
+                            ]);
+                            let triangles = triangles as f64;
+                            measured.cases.push(Case {
+                                scene: scene_name,
+                                triangles,
+                                window,
+                                index: index_name,
+                                bounded,
+                                met,
+                                tests,
+                            });
                         }
-                        let unlike_linear = found
-                            .iter()
-                            .zip(&wanted)
-                            .filter(|(found, all)| match bounded {
-                                true => !all.starts_with(found),
-                                false => found != all,
-                            })
-                            .count();
-                        lost += hits_lost;
-                        unlike += if index_name == "bvh" { unlike_linear } else { 0 };
-                        let per_beam = |count: u64| count as f64 / beams.len() as f64;
-                        let met = per_beam(found.iter().map(Vec::len).sum::<usize>() as u64);
-                        let tests = per_beam(counts.primitives);
-                        data.push([
-                            scene_name.into(),
-                            triangles.into(),
-                            window.into(),
-                            index_name.into(),
-                            if bounded { "seen" } else { "none" }.into(),
-                            beams.len().into(),
-                            met.into(),
-                            tests.into(),
-                            per_beam(counts.boxes).into(),
-                            per_beam(counts.cells).into(),
-                            hits_lost.into(),
-                            unlike_linear.into(),
-                        ]);
-                        let triangles = triangles as f64;
-                        cases.push(Case {
-                            scene: scene_name,
-                            triangles,
-                            window,
-                            index: index_name,
-                            bounded,
-                            met,
-                            tests,
-                        });
                     }
                 }
             }
         }
+        measured
     }
 
-    let of = |scene: &str, window: u32, index: &str, bounded: bool| -> Vec<&Case> {
+    fn of(&self, scene: &str, window: u32, index: &str, bounded: bool) -> Vec<&Case> {
         let same = |case: &&Case| {
             (case.scene, case.window, case.index, case.bounded) == (scene, window, index, bounded)
         };
-        cases.iter().filter(same).collect()
-    };
-    let last = |scene: &str, window: u32, index: &str, bounded: bool| {
-        *of(scene, window, index, bounded).last().expect("a largest scene")
-    };
-    // Tests for each polygon that meets the beam, in the largest scenes.
-    let price = |scene: &str, window: u32, index: &str| {
-        let met = last(scene, window, "linear", false).met;
-        last(scene, window, index, false).tests / met
-    };
-    let everywhere = || SCENES.iter().flat_map(|scene| WINDOWS.map(move |window| (*scene, window)));
-    let [linear, bvh, grid] = INDEXES.map(|index| {
-        everywhere().map(|(scene, window)| price(scene, window, index)).fold(0.0, f64::max)
-    });
-    let growth = |scene: &str, window: u32| {
-        let met = of(scene, window, "linear", false);
-        let decade: Vec<_> =
-            met[met.len() - 2..].iter().map(|case| (case.triangles, case.met)).collect();
-        fitted_exponent(&decade)
-    };
-    let slowest = |window: u32| {
-        SCENES.map(|scene| growth(scene, window)).into_iter().fold(f64::INFINITY, f64::min)
-    };
-    let [wide, .., narrow] = WINDOWS.map(slowest);
-    let holds = lost + unlike == 0 && bvh < 3.0 && grid < 20.0 && linear > 200.0 && wide > 0.8;
-    let largest = number(f64::from(*sizes.last().expect("some sizes")));
-    let claim = format!(
-        "For each polygon that a beam meets, among {largest}, the hierarchy tests at most {bvh:.1}, the grid \
-         {grid:.1}, brute force {linear:.0}; but a beam of 64² pixels meets n^{wide:.2} polygons or more, which \
-         no index spares."
-    );
+        self.cases.iter().filter(same).collect()
+    }
 
-    let mut growths = Row::new();
-    for window in WINDOWS {
-        let mut chart =
-            Chart::new(Axis::log("polygons, n"), Axis::log("polygons per beam").between(1.0, 1e5))
+    /// The case of the largest scene.
+    fn last(&self, scene: &str, window: u32, index: &str, bounded: bool) -> &Case {
+        self.of(scene, window, index, bounded).last().expect("a largest scene")
+    }
+
+    /// Tests for each polygon that meets the beam, in the largest scene of a kind.
+    fn price(&self, scene: &str, window: u32, index: &str) -> f64 {
+        let met = self.last(scene, window, "linear", false).met;
+        self.last(scene, window, index, false).tests / met
+    }
+
+    /// The highest price of an index.
+    fn highest_price(&self, index: &str) -> f64 {
+        let prices = SCENES.iter().flat_map(|scene| WINDOWS.map(|w| self.price(scene, w, index)));
+        prices.fold(0.0, f64::max)
+    }
+
+    /// The exponent of what a beam meets, in the last decade of polygons: the least of all scenes.
+    fn slowest_growth(&self, window: u32) -> f64 {
+        let growth = |scene: &str| {
+            let met = self.of(scene, window, "linear", false);
+            let decade = met[met.len() - 2..].iter().map(|case| (case.triangles, case.met));
+            fitted_exponent(&decade.collect::<Vec<_>>())
+        };
+        SCENES.map(growth).into_iter().fold(f64::INFINITY, f64::min)
+    }
+
+    fn claim(&self, largest: &str) -> (String, bool) {
+        let [linear, bvh, grid] = INDEXES.map(|index| self.highest_price(index));
+        let wide = self.slowest_growth(WINDOWS[0]);
+        let right = self.lost + self.unlike == 0;
+        let holds = right && bvh < 3.0 && grid < 20.0 && linear > 200.0 && wide > 0.8;
+        let claim = format!(
+            "For each polygon that a beam meets, among {largest}, the hierarchy tests at most {bvh:.1}, the grid \
+             {grid:.1}, brute force {linear:.0}; but a beam of 64² pixels meets n^{wide:.2} polygons or more, which \
+             no index spares."
+        );
+        (claim, holds)
+    }
+
+    /// Tests of a beam by the number of polygons.
+    fn growths(&self) -> Row {
+        WINDOWS.into_iter().fold(Row::new(), |row, window| {
+            let polygons = Axis::log("polygons per beam").between(1.0, 1e5);
+            let mut chart = Chart::new(Axis::log("polygons, n"), polygons)
                 .title(format!("scan: beams of {window}² pixels"))
                 .height(430.0);
-        for index in INDEXES {
-            let points = of("scan", window, index, false);
-            let points = points.into_iter().map(|case| (case.triangles, case.tests));
-            chart = chart.series(Series::new(index, method_color(index)).points(points));
-        }
-        let met = of("scan", window, "linear", false);
-        let met = met.into_iter().map(|case| (case.triangles, case.met));
-        growths =
-            growths.panel(1.0, chart.series(Series::new("met", INK).curve().dashed().points(met)));
+            for index in INDEXES {
+                let points = self.of("scan", window, index, false);
+                let points = points.into_iter().map(|case| (case.triangles, case.tests));
+                chart = chart.series(Series::new(index, method_color(index)).points(points));
+            }
+            let met = self.of("scan", window, "linear", false);
+            let met = met.into_iter().map(|case| (case.triangles, case.met));
+            row.panel(1.0, chart.series(Series::new("met", INK).curve().dashed().points(met)))
+        })
     }
-    let mut prices = Row::new();
-    for scene in SCENES {
-        let mut chart = Chart::new(
-            Axis::log("window's side (pixels)").between(2.0, 128.0),
-            Axis::log("tests per polygon met").between(0.5, 3e3),
-        )
-        .title(format!("{scene} of {largest}"))
-        .height(400.0);
-        for index in INDEXES {
-            let points = WINDOWS.map(|window| (f64::from(window), price(scene, window, index)));
-            chart = chart.series(Series::new(index, method_color(index)).points(points));
-        }
-        prices = prices.panel(1.0, chart);
+
+    /// Tests for each polygon met, by the size of the beam.
+    fn prices(&self, largest: &str) -> Row {
+        SCENES.into_iter().fold(Row::new(), |row, scene| {
+            let side = Axis::log("window's side (pixels)").between(2.0, 128.0);
+            let chart = Chart::new(side, Axis::log("tests per polygon met").between(0.5, 3e3))
+                .title(format!("{scene} of {largest}"))
+                .height(400.0);
+            let chart = INDEXES.into_iter().fold(chart, |chart, index| {
+                let price = |window| (f64::from(window), self.price(scene, window, index));
+                let series = Series::new(index, method_color(index));
+                chart.series(series.points(WINDOWS.map(price)))
+            });
+            row.panel(1.0, chart)
+        })
     }
-    let bounded = |scene: &str, index: &str| {
-        let tests = [false, true].map(|bounded| last(scene, 4, index, bounded).tests);
+
+    /// What a bound spares the smallest beams.
+    fn bounded(&self, scene: &str, index: &str) -> String {
+        let tests = [false, true].map(|bounded| self.last(scene, 4, index, bounded).tests);
         format!("{} instead of {}", decimals(tests[1], 0), decimals(tests[0], 0))
-    };
+    }
+}
+
+pub fn make(effort: Effort) -> Finished {
+    let sizes: &[u32] = effort.pick(&[1_000, 10_000], &[100, 1_000, 10_000, 100_000]);
+    let a_row = effort.pick(4, 8);
+    let measured = Measured::new(sizes, a_row);
+    let largest = number(f64::from(*sizes.last().expect("some sizes")));
+    let (claim, holds) = measured.claim(&largest);
+    let bounded = |scene: &str, index: &str| measured.bounded(scene, index);
     let plate = Plate::new("4.12", "Beams and the index", claim, holds)
         .panel(plan())
-        .panel(growths)
-        .panel(prices)
+        .panel(measured.growths())
+        .panel(measured.prices(&largest))
         .note(
             "Plan",
             "a town of 2000 polygons from above, and a beam of 32² pixels that comes down onto it: the houses between \
              the eye and those in the beam are under it. The ground's two polygons, in the beam, are not drawn",
         )
         .note("Same answer", format!(
-            "the hierarchy visits the polygons of brute force in the same order in all beams but {unlike}; 16 rays \
-             in each beam hit {lost} polygons that an index had not found. Met: as far as brute force can tell by \
-             the corners of each polygon"
+            "the hierarchy visits the polygons of brute force in the same order in all beams but {}; 16 rays \
+             in each beam hit {} polygons that an index had not found. Met: as far as brute force can tell by \
+             the corners of each polygon",
+            measured.unlike, measured.lost
         ))
         .note("Far bound", format!(
             "told the depth of what those rays see, a beam of 4² pixels of the scan costs the hierarchy {} \
@@ -261,14 +297,15 @@ pub fn make(effort: Effort) -> Finished {
         ))
         .note("Growth", format!(
             "exponents of what a beam meets are of the last decade, the least of three scenes; with 4² pixels \
-             n^{narrow:.2}"
+             n^{:.2}",
+            measured.slowest_growth(WINDOWS[WINDOWS.len() - 1])
         ))
         .note("Settings", format!(
             "a picture of {SIZE}, beams evenly over it, {} of a size at most; the rest of the work, boxes and \
              cells, is in the data",
             a_row * a_row
         ));
-    Finished { plate, data }
+    Finished { plate, data: measured.data }
 }
 
 impl Beam {
