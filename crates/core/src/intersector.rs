@@ -2,6 +2,8 @@
 //!
 //! Chapter 4 swaps the answerers; all of them must agree with [`LinearScan`] bit for bit.
 
+use std::ops::AddAssign;
+
 use glam::DVec3;
 
 use crate::geometry::{
@@ -220,6 +222,14 @@ pub struct TestCounts {
     pub cells: u64,
     /// Primitives tested.
     pub primitives: u64,
+}
+
+impl AddAssign for TestCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.boxes += other.boxes;
+        self.cells += other.cells;
+        self.primitives += other.primitives;
+    }
 }
 
 impl Observer for TestCounts {

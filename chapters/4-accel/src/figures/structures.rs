@@ -85,9 +85,7 @@ fn measure(family: Family, count: u32, size: ImageSize, runs: usize) -> Vec<Case
         let mut found = Vec::new();
         for rays in &rays {
             let (met, work) = rays.watch(&*built.index);
-            counts.boxes += work.boxes;
-            counts.cells += work.cells;
-            counts.primitives += work.primitives;
+            counts += work;
             // Of a shadow ray only whether it hits is the same for all.
             let key = |hit: lancer_core::intersector::Hit| match rays.kind {
                 Kind::Shadow => (0, 0),
