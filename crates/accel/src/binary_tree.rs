@@ -7,12 +7,15 @@ use crate::four_boxes::{FourSlabs, Frame, FrameBox};
 
 /// A binary hierarchy of bounding volumes, walked by recursion: the algorithm as it is taught.
 ///
-/// [`crate::Bvh`] walks the same tree without recursion and two levels at a time. This one is for
-/// reading, for looking at trees, and for checking the faster walk.
+/// *Built* by a [`crate::Split`], as [`crate::Bvh`].
 ///
-/// *Walk:* a ray that misses a node's box misses everything below. Of two children that it meets it
-/// takes the nearer one first, since a hit there often ends before the other begins. Source: Kay and
-/// Kajiya, *Ray Tracing Complex Scenes*, SIGGRAPH 1986.
+/// *Walked* from the root: a ray that misses a node's box misses everything below. Of two children that it
+/// meets it takes the nearer one first, since a hit there often ends before the other begins.
+///
+/// *Wins* for reading, for looking at trees, and for checking the faster walk. *Loses* to [`crate::Bvh`], which
+/// walks the same tree without recursion and two levels at a time.
+///
+/// *Sources:* Kay and Kajiya, *Ray Tracing Complex Scenes*, SIGGRAPH 1986.
 #[doc(alias = "hiérarchie de volumes englobants")]
 pub struct BinaryTree<'s> {
     pub(crate) scene: &'s Scene,

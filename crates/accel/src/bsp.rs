@@ -15,7 +15,7 @@ use crate::touching::surface_points;
 /// « Subdivision spatiale irrégulière »: a binary space partition, a tree of planes in any direction,
 /// taken from the scene's own polygons.
 ///
-/// **Built** from the top: a few polygons of a cell are asked for their planes, and the plane that
+/// *Built* from the top: a few polygons of a cell are asked for their planes, and the plane that
 /// parts the cell's primitives best, evenly and cutting few, divides it. What lies in the plane stays
 /// at the node, what crosses it goes to both sides (a clipped copy of the polygon tells to which
 /// cells further down; the primitive test stays the scene's). A cell becomes a leaf when it is small,
@@ -25,15 +25,18 @@ use crate::touching::surface_points;
 /// in a list. So the planes upright on the faces' edges are candidates as well ([`Planes`]), and for a
 /// sphere the three coordinate planes through its centre.
 ///
-/// **Walked** like a kd-tree, near side first, then what lies in the plane, then the far side; a step
+/// *Walked* like a kd-tree, near side first, then what lies in the plane, then the far side; a step
 /// costs two scalar products instead of a subtraction.
 ///
-/// O(n log n) steps to build when few polygons are cut; in the worst case, where all cross each other, O(n²)
-/// pieces, so their number is limited and the leaves grow instead. About O(log n) cells for a ray. Wins where
-/// few large walls in oblique directions bound the space: rooms, the levels of games. Loses on fine meshes to
-/// a kd-tree: nothing makes it cut off empty space. A million triangles take about 10 s to build.
+/// It takes O(n log n) steps to build when few polygons are cut, and about O(log n) cells for a ray. In the worst
+/// case all cross each other and there would be O(n²) pieces: their number is limited, and the leaves grow
+/// instead.
 ///
-/// Sources: Fuchs, Kedem, Naylor, *On Visible Surface Generation by A Priori Tree Structures*,
+/// *Wins* where few large walls in oblique directions bound the space: rooms, the levels of games. *Loses* on
+/// fine meshes to a kd-tree, since nothing makes it cut off empty space. A million triangles take about 10 s to
+/// build.
+///
+/// *Sources:* Fuchs, Kedem, Naylor, *On Visible Surface Generation by A Priori Tree Structures*,
 /// SIGGRAPH 1980; Kaplan, *Space-Tracing, a Constant Time Ray-Tracer*, SIGGRAPH 1985 course notes.
 #[doc(alias = "subdivision spatiale irrégulière")]
 #[doc(alias = "arbre BSP")]

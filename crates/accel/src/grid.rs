@@ -28,7 +28,7 @@ use crate::touching::{Footprint, overlap, surface_points};
 /// it crosses cell by cell, and in the « théière dans un stade » (teapot in a stadium): cells that suit
 /// the large are full of the small.
 ///
-/// Sources: Fujimoto, Tanaka, Iwata, *ARTS: Accelerated Ray-Tracing System*, IEEE CG&A 6(4), 1986;
+/// *Sources:* Fujimoto, Tanaka, Iwata, *ARTS: Accelerated Ray-Tracing System*, IEEE CG&A 6(4), 1986;
 /// Amanatides and Woo, *A Fast Voxel Traversal Algorithm for Ray Tracing*, Eurographics 1987.
 #[doc(alias = "subdivision spatiale régulière")]
 #[doc(alias = "grille régulière")]

@@ -21,7 +21,7 @@ use crate::spatial::{
 /// « Subdivision spatiale irrégulière »: a tree of planes perpendicular to an axis, each put where it
 /// saves most.
 ///
-/// **Built** from the top by the surface area heuristic: a random ray that meets a convex cell meets a
+/// *Built* from the top by the surface area heuristic: a random ray that meets a convex cell meets a
 /// convex part of it with the probability S(part) / S(cell), so a plane costs
 ///
 /// ```text
@@ -34,15 +34,17 @@ use crate::spatial::{
 /// crosses the plane goes to both sides, and there only the part counts that is inside the cell
 /// ("perfect splits": the triangle is clipped). Depth is at most 8 + 1.3 log₂ N.
 ///
-/// **Walked** near cell first: the plane divides the ray's interval, the near side is visited, the far
+/// *Walked* near cell first: the plane divides the ray's interval, the near side is visited, the far
 /// side waits on a stack. As cells do not overlap, the first cell with a hit inside ends the walk; a
 /// primitive that reaches into this cell but is met in a later one does not.
 ///
-/// O(n log n) steps to build, about O(log n) cells for a ray. Wins where primitives are of uneven
-/// size and density and much space is empty; loses to a hierarchy of volumes in memory and build time,
-/// because a primitive stands in several leaves, and is tested several times.
+/// It takes O(n log n) steps to build, and about O(log n) cells for a ray.
 ///
-/// Sources: Bentley, *Multidimensional Binary Search Trees Used for Associative Searching*, CACM 18(9),
+/// *Wins* where primitives are of uneven size and density and much space is empty. *Loses* to a hierarchy of
+/// volumes in memory and build time, because a primitive stands in several leaves, and is tested several
+/// times.
+///
+/// *Sources:* Bentley, *Multidimensional Binary Search Trees Used for Associative Searching*, CACM 18(9),
 /// 1975; MacDonald, Booth, *Heuristics for Ray Tracing Using Space Subdivision*, The Visual Computer 6,
 /// 1990; Wald, Havran, *On Building Fast kd-Trees for Ray Tracing, and on Doing That in O(N log N)*,
 /// RT 2006.

@@ -13,12 +13,15 @@ use crate::pending::{Entered, Lanes, Pending};
 /// The compressed wide hierarchy that the obvhs library builds: eight children per node, their boxes on
 /// a grid of 256 steps over the node's.
 ///
-/// A node takes 80 bytes where a [`crate::Bvh`] takes 256 for as many boxes, and every visit unpacks
-/// them. It is made for graphics processors, where a ray waits for memory. Here it takes a third of
-/// the memory, and loses to the wider boxes as long as those fit into the caches. As with
-/// [`crate::ObvhsBvh2`] only the tree is the library's.
+/// *Built* by the library, from a binary tree. As with [`crate::ObvhsBvh2`] only the tree is the library's.
 ///
-/// Source: Ylitie, Karras, Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
+/// *Walked* near to far: every visit unpacks a node's boxes, and tests them four at a time.
+///
+/// *Wins* in memory: a node takes 80 bytes where a [`crate::Bvh`] takes 256 for as many boxes, which is made for
+/// graphics processors, where a ray waits for memory. *Loses* to wider boxes as long as those fit into the
+/// caches.
+///
+/// *Sources:* Ylitie, Karras, Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
 /// BVHs*, HPG 2017.
 pub struct ObvhsCwbvh<'s> {
     scene: &'s Scene,

@@ -26,7 +26,7 @@ use crate::touching::{Footprint, overlap, surface_points};
 /// *Loses* to hierarchies of boxes and to the kd-tree: the planes lie where halving puts them, not
 /// where the primitives end, so a primitive is in several leaves and leaves are entered in vain.
 ///
-/// Sources: Glassner, *Space Subdivision for Fast Ray Tracing*, IEEE CG&A 4(10), 1984; the pieces of the
+/// *Sources:* Glassner, *Space Subdivision for Fast Ray Tracing*, IEEE CG&A 4(10), 1984; the pieces of the
 /// ray: Gargantini and Atkinson, *Ray Tracing an Octree*, Computer Graphics Forum 12(4), 1993.
 #[doc(alias = "subdivision spatiale irrégulière")]
 #[doc(alias = "arbre octal")]

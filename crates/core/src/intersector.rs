@@ -315,6 +315,9 @@ impl<'s> Probe<'s> {
 }
 
 /// Brute force: every primitive for every ray. The oracle of all other indexes.
+///
+/// *Built* from nothing, *walked* in the order of the ids. *Wins* by being right at sight, and on a handful of
+/// primitives. *Loses* everywhere else: a ray costs O(n).
 #[derive(Clone, Debug)]
 pub struct LinearScan<'s>(Subset<'s>);
 
