@@ -47,7 +47,7 @@ pub struct BspTree<'s> {
     /// What is this close to a plane may be on either side of it: each of up to 50 cuts moves a new corner by
     /// a few ε.
     slack: f64,
-    /// In depth-first order; the first is the root.
+    /// The nodes in depth-first order; the first is the root.
     nodes: Vec<Node>,
     /// The primitives of the nodes, node by node.
     primitives: Vec<PrimitiveId>,
@@ -66,7 +66,7 @@ enum Node {
 /// no digits.
 #[derive(Clone, Copy)]
 struct Plane {
-    /// Of unit length, towards the front.
+    /// The unit normal, which points to the front.
     normal: DVec3,
     offset: f64,
 }
@@ -109,9 +109,9 @@ impl Default for BspBuilder {
 
 /// A cell with so few primitives is not divided.
 const LEAF: usize = 4;
-/// So many primitives of a cell, spread over its list, are asked for their planes.
+/// The number of a cell's primitives, spread over its list, that are asked for their planes.
 const ASKED: usize = 8;
-/// So many, spread in the same way, tell what a plane is worth.
+/// The number, spread in the same way, that tell what a plane is worth.
 const JUDGES: usize = 128;
 /// A cut polygon weighs this much more than one on the fuller side.
 const CUT: usize = 2;

@@ -294,7 +294,7 @@ impl<'g> RayCells<'g> for Line<'g> {
 /// The cells that a ray from far away might visit.
 struct Slices<'g> {
     cells: Box<dyn Iterator<Item = Cell<'g>> + 'g>,
-    /// Of the cell that came last.
+    /// The box of the cell that came last.
     bounds: Bounds3,
 }
 
@@ -443,10 +443,10 @@ struct Axis {
     /// The parameter at which the ray meets the plane ahead: never, if it runs along it.
     crossing: f64,
     cell: i32,
-    /// By what a step changes the cell, and the last one.
+    /// What a step adds to the cell, and the last cell.
     step: i32,
     last: i32,
-    /// From a cell to the plane ahead.
+    /// What leads from a cell's number to that of the plane ahead.
     ahead: i32,
 }
 

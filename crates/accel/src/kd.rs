@@ -54,7 +54,7 @@ pub struct KdTree<'s> {
     scene: &'s Scene,
     /// The root's cell.
     bounds: Bounds3,
-    /// In depth-first order; the first is the root.
+    /// The nodes in depth-first order; the first is the root.
     nodes: Vec<Node>,
     /// The primitives of the leaves, leaf by leaf.
     primitives: Vec<PrimitiveId>,
@@ -88,7 +88,7 @@ impl Default for KdBuilder {
     }
 }
 
-/// Up to this many primitives every candidate plane is tried, above as many as there are bins.
+/// Every candidate plane is tried for up to this many primitives; the planes between bins for more.
 const SWEEP: usize = 32;
 const BINS: usize = 64;
 
@@ -226,7 +226,7 @@ impl KdBuilder {
     /// The cost C of a plane, for `counts` primitives below and above it.
     fn cost(&self, cell: Bounds3, axis: usize, split: f64, counts: [usize; 2]) -> f64 {
         let extent = cell.max - cell.min;
-        // Only quotients of areas matter: in units of the cell nothing over- or underflows.
+        // Only quotients of areas matter. Nothing over- or underflows in units of the cell.
         let unit = extent / extent.max_element();
         let share = (split - cell.min[axis]) / extent[axis];
         let parts = [share, 1.0 - share].map(|share| {
@@ -295,7 +295,7 @@ fn consider_all(
     ends.extend(references.iter().map(|reference| reference.bounds.max[axis]));
     ends.sort_unstable_by(f64::total_cmp);
 
-    // Of the starts and ends in order, those before the plane.
+    // How many of the starts and ends, in order, lie before the plane.
     let (mut started, mut ended) = (0, 0);
     while ended < ends.len() {
         let split = match starts.get(started) {
@@ -484,7 +484,7 @@ impl Traversal for KdTree<'_> {
     }
 }
 
-/// The leaves along a ray. Of what is still to be visited the nearest is last.
+/// The leaves along a ray. What is pending ends with the nearest.
 struct Descent<'t> {
     tree: &'t KdTree<'t>,
     axes: [Thick; 3],

@@ -1,4 +1,4 @@
-//! By how much what computes in `f64` may err, where space is split.
+//! The margins for rounding where space is split.
 //!
 //! Space can be split exactly, rays and primitives cannot be computed exactly. A primitive may be met a
 //! rounding error beside itself, and then it must still be found in the cell where it was met. So a primitive
@@ -10,7 +10,7 @@ use lancer_core::geometry::{Bounds3, Ray};
 /// Every rounded operation in question, and few of them follow each other, errs by half an ε.
 pub(crate) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// By how much a primitive is grown before it is put into the cells of a scene within `bounds`.
+/// The margin by which a primitive is grown before it is put into the cells of a scene within `bounds`.
 ///
 /// The rounding of coordinates and planes needs 16 ε of the largest coordinate. The share of the scene's
 /// size is far more than that size rounds to, and still far less than a cell: it pays for the rounding of

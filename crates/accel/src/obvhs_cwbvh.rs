@@ -57,15 +57,11 @@ impl<'s> ObvhsCwbvh<'s> {
     /// Checks that every one of these primitives is in one leaf and in all boxes above it, as they are
     /// unpacked.
     pub fn validate<'p>(&self, primitives: impl Into<Subset<'p>>) -> Result<(), String> {
-        let mut seen = Seen::new(primitives.into());
-        let mut reached = 0;
+        let mut seen = Seen::new(primitives.into(), self.nodes.len());
         let root = (0, FrameBox::EVERYTHING);
         let mut pending = if self.nodes.is_empty() { Vec::new() } else { vec![root] };
         while let Some((index, around)) = pending.pop() {
-            reached += 1;
-            if reached > self.nodes.len() {
-                return Err("a node is below itself".into());
-            }
+            seen.node()?;
             let node = self.nodes.get(index).ok_or_else(|| format!("there is no node {index}"))?;
             for (half, boxes) in [0, 4].into_iter().zip(unpack(node)) {
                 for lane in 0..4 {
@@ -77,9 +73,6 @@ impl<'s> ObvhsCwbvh<'s> {
                     }
                 }
             }
-        }
-        if reached < self.nodes.len() {
-            return Err(format!("{reached} of {} nodes are reached", self.nodes.len()));
         }
         seen.all()
     }

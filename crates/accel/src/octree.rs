@@ -48,7 +48,7 @@ pub struct Octree<'s> {
 pub struct OctreeBuilder {
     /// A cube with no more primitives than this is not cut.
     pub leaf_size: usize,
-    /// Nor is one that is the result of so many cuts.
+    /// A cube that is the result of so many cuts is not cut either.
     pub max_depth: u32,
     /// Whether a ray remembers what it was tested against last. The answers are the same.
     pub mailboxing: bool,
@@ -369,8 +369,8 @@ struct Visit {
     inside: Interval,
 }
 
-/// The leaves along a ray. Of what is still to be visited the nearest is last; at each depth that is
-/// seven parts of a cube at most, three but for rounding.
+/// The leaves along a ray. What is pending ends with the nearest; it has at most seven parts of a cube at each
+/// depth, three but for rounding.
 struct Descent<'i> {
     tree: &'i Octree<'i>,
     line: Line,

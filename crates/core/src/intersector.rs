@@ -56,8 +56,8 @@ impl Query {
 
 /// An index of a scene's primitives.
 ///
-/// An answer does not depend on the index: of several primitives at the same `t` the one with the
-/// smallest [`PrimitiveId`] is the hit.
+/// An answer does not depend on the index: the smallest [`PrimitiveId`] is the hit where several primitives
+/// have the same `t`.
 pub trait Intersector: Sync {
     /// The first primitive that the ray meets in `range`.
     fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit>;

@@ -13,7 +13,7 @@ const NODE_COST: f32 = 1.0;
 pub(super) const MAX_LEAF: usize = 4;
 /// Bins along an axis. Twice as many lower the cost of a tree by less than 1 %.
 const BINS: usize = 16;
-/// At this depth the heuristic is given up and nodes are halved, which ends within log2 of 2³²
+/// The depth at which the heuristic is given up and nodes are halved, which ends within log2 of 2³²
 /// further levels: no arrangement of primitives makes the recursion deeper than [`MAX_DEPTH`].
 const SAH_DEPTH: usize = 64;
 pub(crate) const MAX_DEPTH: usize = SAH_DEPTH + 32;
@@ -143,7 +143,7 @@ fn around_centers(items: &[Item]) -> FrameBox {
     })
 }
 
-/// So many items are sorted along each axis, and all cuts are compared: that is quicker than bins, most of
+/// The most items that are sorted along each axis, to compare all cuts: that is quicker than bins, most of
 /// which would be empty.
 const FEW: usize = BINS;
 
@@ -166,7 +166,7 @@ impl Cut {
         };
         // Two are cut between them whatever the axis.
         for axis in 0..if items.len() == 2 { 1 } else { 3 } {
-            // As integers the centres' bits are in the order of numbers, or in the opposite if negative.
+            // The centres' bits are ordered as integers like the numbers, or the opposite way if negative.
             let mut keys = [(u64::MAX, 0); FEW];
             for ((k, item), key) in (0..).zip(items).zip(&mut keys) {
                 let bits = item.center()[axis].to_bits();
@@ -207,12 +207,12 @@ struct Bins {
     extent: f32,
 }
 
-/// By what items are thrown into bins.
+/// What items are thrown into bins by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Order {
-    /// By the places of their centres along an axis.
+    /// The places of their centres along an axis.
     Axis(usize),
-    /// By their sizes, large ones first.
+    /// Their sizes, large ones first.
     Size,
 }
 
@@ -418,7 +418,7 @@ mod tests {
         assert_eq!((parts(0.5), parts(1.0)), (None, Some(1)));
     }
 
-    /// From the limit on a subtree is halved at every step: so no tree is deeper than the limit says.
+    /// A subtree is halved at every step beyond the limit: so no tree is deeper than the limit says.
     #[test]
     fn below_the_limit_the_tree_is_halved() {
         // Each step along this row is nine tenths of the last: the heuristic takes off the first few.
