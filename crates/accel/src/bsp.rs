@@ -6,7 +6,7 @@ use lancer_core::intersector::{Hit, Observer, Probe, Query, Traversal, Wanted};
 use lancer_core::scene::{PrimitiveId, Scene, Shape, Subset};
 use smallvec::SmallVec;
 
-use crate::margins::{rounding, slack};
+use crate::margins::{TIES, rounding, slack};
 use crate::spatial::{
     PARALLEL, Polygon, REFERENCES_PER_PRIMITIVE, clip, depth_limit, shared_allowance,
 };
@@ -185,7 +185,7 @@ impl BspBuilder {
                 Piece { primitive, part }
             })
             .collect();
-        let slack = slack(bounds);
+        let slack = 16.0 * slack(bounds);
         let max_depth = depth_limit(pieces.len());
         let allowance = REFERENCES_PER_PRIMITIVE * pieces.len();
         let root = self.subtree(pieces, slack, max_depth, allowance);
@@ -371,9 +371,8 @@ impl<'s> BspTree<'s> {
     ) -> Option<Hit> {
         let &Query { ref ray, range, wanted } = query;
         let mut probe = Probe::new(self.scene, ray, range);
-        // Rounding may move the ray, or the polygon that it meets, across a plane; two products of three terms
-        // say where that is.
-        let thickness = 4.0 * rounding(ray, self.bounds)? + 2.0 * self.slack;
+        // Rounding may move the ray, or the polygon that it meets, across a plane.
+        let thickness = TIES * rounding(ray, self.bounds)? + 2.0 * self.slack;
         let bounds = self.bounds.grown(thickness);
         let mut inside = Slabs::new(ray).cross(bounds.min, bounds.max, range)?;
         let origin = ray.origin - self.bounds.center();
@@ -426,7 +425,7 @@ impl<'s> BspTree<'s> {
             let best = probe.range().max;
             let next = loop {
                 match stack.pop() {
-                    Some(pending) if pending.inside.min * Slabs::NEAR <= best => break pending,
+                    Some(pending) if pending.inside.min <= best => break pending,
                     Some(_) => {}
                     None => return probe.best(),
                 }

@@ -8,7 +8,7 @@ use lancer_core::intersector::{BeamIndex, Hit, Observer, Probe, Query, Traversal
 use lancer_core::scene::{PrimitiveId, Scene, Subset};
 
 use crate::cells::{Cell, RayCells, search, visited};
-use crate::margins::{rounding, slack};
+use crate::margins::{regular_slack, rounding};
 use crate::touching::{Footprint, overlap, surface_points};
 
 /// The slides' regular subdivision of space, « subdivision spatiale régulière »: a box around the scene
@@ -74,7 +74,7 @@ impl GridBuilder {
     pub fn build<'s>(self, primitives: impl Into<Subset<'s>>) -> Grid<'s> {
         let all = primitives.into();
         let (scene, bounds) = (all.scene(), all.bounds());
-        let slack = slack(bounds);
+        let slack = regular_slack(bounds);
         let bounds = bounds.grown(slack);
         let boxes: Vec<Bounds3> =
             all.iter().map(|primitive| scene.primitive_bounds(primitive).grown(slack)).collect();

@@ -12,7 +12,7 @@ pub use sides::Sides;
 use sides::Thick;
 
 use crate::cells::{Cell, RayCells, search, visited};
-use crate::margins::{rounding, slack};
+use crate::margins::{TIES, rounding, slack};
 use crate::sah::sah_cost;
 use crate::spatial::{
     Leaf, PARALLEL, Polygon, REFERENCES_PER_PRIMITIVE, clip, common, depth_limit, shared_allowance,
@@ -118,17 +118,15 @@ impl KdBuilder {
     pub fn build<'s>(self, primitives: impl Into<Subset<'s>>) -> KdTree<'s> {
         let all = primitives.into();
         let scene = all.scene();
-        let bounds = all.bounds();
-        let slack = slack(bounds);
-        let bounds = bounds.grown(slack);
         let reference = |primitive| {
-            let bounds = scene.primitive_bounds(primitive).grown(slack);
-            Reference { primitive, bounds }
+            let bounds = scene.primitive_bounds(primitive);
+            Reference { primitive, bounds: bounds.grown(slack(bounds)) }
         };
         let references: Vec<Reference> = all.iter().map(reference).collect();
+        let bounds = references.iter().map(|r| r.bounds).fold(Bounds3::EMPTY, Bounds3::union);
         let max_depth = depth_limit(references.len());
         let allowance = REFERENCES_PER_PRIMITIVE * references.len();
-        let root = self.subtree(scene, slack, bounds, references, max_depth, allowance);
+        let root = self.subtree(scene, bounds, references, max_depth, allowance);
         let mut tree =
             KdTree { scene, bounds, nodes: Vec::new(), primitives: Vec::new(), max_depth };
         tree.lay_out(root);
@@ -138,7 +136,6 @@ impl KdBuilder {
     fn subtree(
         &self,
         scene: &Scene,
-        slack: f64,
         cell: Bounds3,
         references: Vec<Reference>,
         levels: u32,
@@ -160,7 +157,7 @@ impl KdBuilder {
         for reference in references {
             match is_on(&reference) {
                 [true, true] => {
-                    let parts = cells.map(|half| self.part(scene, slack, &reference, half));
+                    let parts = cells.map(|half| self.part(scene, &reference, half));
                     for (side, bounds) in [&mut below, &mut above].into_iter().zip(parts) {
                         if !bounds.is_empty() {
                             side.push(Reference { bounds, ..reference });
@@ -173,19 +170,20 @@ impl KdBuilder {
         }
         let parallel = below.len() + above.len() > PARALLEL;
         let allowances = shared_allowance(allowance, [below.len(), above.len()]);
-        let below = || self.subtree(scene, slack, cells[0], below, levels - 1, allowances[0]);
-        let above = || self.subtree(scene, slack, cells[1], above, levels - 1, allowances[1]);
+        let below = || self.subtree(scene, cells[0], below, levels - 1, allowances[0]);
+        let above = || self.subtree(scene, cells[1], above, levels - 1, allowances[1]);
         let (below, above) = if parallel { rayon::join(below, above) } else { (below(), above()) };
         Subtree::Inner { axis, split, children: Box::new([below, above]) }
     }
 
     /// Bounds of the part of a primitive that is in a cell; empty when it does not come near.
-    fn part(&self, scene: &Scene, slack: f64, reference: &Reference, cell: Bounds3) -> Bounds3 {
+    fn part(&self, scene: &Scene, reference: &Reference, cell: Bounds3) -> Bounds3 {
         let within = common(reference.bounds, cell);
         if !self.perfect_splits {
             return within;
         }
         let whole = scene.primitive_bounds(reference.primitive);
+        let slack = slack(whole);
         let near = within.grown(slack);
         let part = match scene.shape(reference.primitive) {
             Shape::Triangle(index) => Bounds3::of_points(clipped(scene.mesh.corners(index), near)),
@@ -362,11 +360,11 @@ impl<'s> KdTree<'s> {
 
     #[inline(always)]
     fn descent(&self, ray: &Ray, range: Interval) -> Option<Descent<'_>> {
-        let rounding = rounding(ray, self.bounds)?;
-        let Bounds3 { min, max } = self.bounds.grown(rounding);
+        let thickness = TIES * rounding(ray, self.bounds)?;
+        let Bounds3 { min, max } = self.bounds.grown(thickness);
         let inside = Slabs::new(ray).cross(min, max, range)?;
         let (o, d) = (ray.origin.to_array(), ray.direction.to_array());
-        let axes: [Thick; 3] = std::array::from_fn(|k| Thick::new(o[k], d[k], rounding));
+        let axes: [Thick; 3] = std::array::from_fn(|k| Thick::new(o[k], d[k], thickness));
         let mut pending = Stack::new();
         pending.push(Pending { node: 0, inside });
         Some(Descent { tree: self, axes, pending, at: 0 })
@@ -503,7 +501,7 @@ impl<'t> RayCells<'t> for Descent<'t> {
         let tree = self.tree;
         let Pending { node, mut inside } = loop {
             let pending = self.pending.pop()?;
-            if pending.inside.min * Slabs::NEAR <= max {
+            if pending.inside.min <= max {
                 break pending;
             }
         };

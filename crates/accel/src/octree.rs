@@ -7,7 +7,7 @@ use lancer_core::scene::{PrimitiveId, Scene, Subset};
 use smallvec::SmallVec;
 
 use crate::cells::{Cell, RayCells, search, visited};
-use crate::margins::{rounding, slack};
+use crate::margins::{regular_slack, rounding};
 use crate::spatial::Leaf;
 use crate::touching::{Footprint, overlap, surface_points};
 
@@ -111,7 +111,7 @@ impl OctreeBuilder {
     pub fn build<'s>(self, primitives: impl Into<Subset<'s>>) -> Octree<'s> {
         let all = primitives.into();
         let (scene, bounds) = (all.scene(), all.bounds());
-        let slack = slack(bounds);
+        let slack = regular_slack(bounds);
         let bounds = bounds.grown(slack);
         // The scene is in the cube's lower corner: in the middle a flat one would lie on both sides of
         // a plane.
