@@ -92,7 +92,7 @@ pub fn first_hit_wins(scene: &Scene, grid: &Grid, ray: &Ray) -> Option<Hit> {
 /// made for speed and promises no watertight surface.
 pub struct LibraryWalk {
     tree: Bvh2,
-    /// In the order of the tree's leaves.
+    /// The triangles in the order of the tree's leaves.
     triangles: Vec<Triangle>,
 }
 

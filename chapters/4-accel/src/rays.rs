@@ -10,11 +10,11 @@ use lancer_core::scene::{PointLight, Scene};
 /// Where rays come from, which says how alike neighbours are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// From the eye through the pixels' centres, in the order of rendering: neighbours are alike.
+    /// Rays from the eye through the pixels' centres, in the order of rendering: neighbours are alike.
     Primary,
-    /// From what those meet to a lamp beside the camera: they end in one point. Any hit will do.
+    /// Rays from what those meet to a lamp beside the camera: they end in one point. Any hit will do.
     Shadow,
-    /// One bounce from what those meet, cosine distributed: neighbours have nothing in common.
+    /// Rays of one bounce from what the first meet, cosine distributed: neighbours have nothing in common.
     Diffuse,
 }
 

@@ -6,7 +6,7 @@ use lancer_core::intersector::{Hit, Observer, Probe, Query, Traversal, Wanted};
 use lancer_core::scene::{PrimitiveId, Scene, Shape, Subset};
 use smallvec::SmallVec;
 
-use crate::margins::{rounding, slack};
+use crate::margins::{TIES, rounding, slack};
 use crate::spatial::{
     PARALLEL, Polygon, REFERENCES_PER_PRIMITIVE, clip, depth_limit, shared_allowance,
 };
@@ -15,7 +15,7 @@ use crate::touching::surface_points;
 /// « Subdivision spatiale irrégulière »: a binary space partition, a tree of planes in any direction,
 /// taken from the scene's own polygons.
 ///
-/// **Built** from the top: a few polygons of a cell are asked for their planes, and the plane that
+/// *Built* from the top: a few polygons of a cell are asked for their planes, and the plane that
 /// parts the cell's primitives best, evenly and cutting few, divides it. What lies in the plane stays
 /// at the node, what crosses it goes to both sides (a clipped copy of the polygon tells to which
 /// cells further down; the primitive test stays the scene's). A cell becomes a leaf when it is small,
@@ -25,15 +25,18 @@ use crate::touching::surface_points;
 /// in a list. So the planes upright on the faces' edges are candidates as well ([`Planes`]), and for a
 /// sphere the three coordinate planes through its centre.
 ///
-/// **Walked** like a kd-tree, near side first, then what lies in the plane, then the far side; a step
+/// *Walked* like a kd-tree, near side first, then what lies in the plane, then the far side; a step
 /// costs two scalar products instead of a subtraction.
 ///
-/// O(n log n) steps to build when few polygons are cut; in the worst case, where all cross each other, O(n²)
-/// pieces, so their number is limited and the leaves grow instead. About O(log n) cells for a ray. Wins where
-/// few large walls in oblique directions bound the space: rooms, the levels of games. Loses on fine meshes to
-/// a kd-tree: nothing makes it cut off empty space. A million triangles take about 10 s to build.
+/// It takes O(n log n) steps to build when few polygons are cut, and about O(log n) cells for a ray. In the worst
+/// case all cross each other and there would be O(n²) pieces: their number is limited, and the leaves grow
+/// instead.
 ///
-/// Sources: Fuchs, Kedem, Naylor, *On Visible Surface Generation by A Priori Tree Structures*,
+/// *Wins* where few large walls in oblique directions bound the space: rooms, the levels of games. *Loses* on
+/// fine meshes to a kd-tree, since nothing makes it cut off empty space. A million triangles take about 10 s to
+/// build.
+///
+/// *Sources:* Fuchs, Kedem, Naylor, *On Visible Surface Generation by A Priori Tree Structures*,
 /// SIGGRAPH 1980; Kaplan, *Space-Tracing, a Constant Time Ray-Tracer*, SIGGRAPH 1985 course notes.
 #[doc(alias = "subdivision spatiale irrégulière")]
 #[doc(alias = "arbre BSP")]
@@ -44,7 +47,7 @@ pub struct BspTree<'s> {
     /// What is this close to a plane may be on either side of it: each of up to 50 cuts moves a new corner by
     /// a few ε.
     slack: f64,
-    /// In depth-first order; the first is the root.
+    /// The nodes in depth-first order; the first is the root.
     nodes: Vec<Node>,
     /// The primitives of the nodes, node by node.
     primitives: Vec<PrimitiveId>,
@@ -63,7 +66,7 @@ enum Node {
 /// no digits.
 #[derive(Clone, Copy)]
 struct Plane {
-    /// Of unit length, towards the front.
+    /// The unit normal, which points to the front.
     normal: DVec3,
     offset: f64,
 }
@@ -106,9 +109,9 @@ impl Default for BspBuilder {
 
 /// A cell with so few primitives is not divided.
 const LEAF: usize = 4;
-/// So many primitives of a cell, spread over its list, are asked for their planes.
+/// The number of a cell's primitives, spread over its list, that are asked for their planes.
 const ASKED: usize = 8;
-/// So many, spread in the same way, tell what a plane is worth.
+/// The number, spread in the same way, that tell what a plane is worth.
 const JUDGES: usize = 128;
 /// A cut polygon weighs this much more than one on the fuller side.
 const CUT: usize = 2;
@@ -182,7 +185,7 @@ impl BspBuilder {
                 Piece { primitive, part }
             })
             .collect();
-        let slack = slack(bounds);
+        let slack = 16.0 * slack(bounds);
         let max_depth = depth_limit(pieces.len());
         let allowance = REFERENCES_PER_PRIMITIVE * pieces.len();
         let root = self.subtree(pieces, slack, max_depth, allowance);
@@ -368,9 +371,8 @@ impl<'s> BspTree<'s> {
     ) -> Option<Hit> {
         let &Query { ref ray, range, wanted } = query;
         let mut probe = Probe::new(self.scene, ray, range);
-        // Rounding may move the ray, or the polygon that it meets, across a plane; two products of three terms
-        // say where that is.
-        let thickness = 4.0 * rounding(ray, self.bounds)? + 2.0 * self.slack;
+        // Rounding may move the ray, or the polygon that it meets, across a plane.
+        let thickness = TIES * rounding(ray, self.bounds)? + 2.0 * self.slack;
         let bounds = self.bounds.grown(thickness);
         let mut inside = Slabs::new(ray).cross(bounds.min, bounds.max, range)?;
         let origin = ray.origin - self.bounds.center();
@@ -423,7 +425,7 @@ impl<'s> BspTree<'s> {
             let best = probe.range().max;
             let next = loop {
                 match stack.pop() {
-                    Some(pending) if pending.inside.min * Slabs::NEAR <= best => break pending,
+                    Some(pending) if pending.inside.min <= best => break pending,
                     Some(_) => {}
                     None => return probe.best(),
                 }

@@ -159,7 +159,7 @@ pub struct FourSlabs {
     /// The ray itself, rounded, for tests of triangles.
     pub(crate) origin: Vec3A,
     pub(crate) direction: Vec3A,
-    /// By how much its origin may have been moved aside before it was rounded.
+    /// How far its origin may have been moved aside before it was rounded.
     pub(crate) moved: f32,
     /// The parameter in units of the boxes is `t · per_unit − skipped`.
     per_unit: f64,
@@ -192,7 +192,7 @@ impl Placed {
         let farthest = origin.abs().max_element().max(1.0);
         let away = farthest * (origin / farthest).length();
         let away = if away.is_finite() { away } else { f64::INFINITY };
-        // From a distance that is no number any more all boxes are let in.
+        // All boxes are let in from a distance that is no number any more.
         let is_moved = away >= 2.0 && away.is_finite();
         let skipped = if is_moved { (away - 2.0) / direction.length() } else { 0.0 };
         // What `f64` makes of a direction of extreme length is not known here, nor what of NaN and infinity.

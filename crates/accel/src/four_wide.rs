@@ -23,7 +23,7 @@ pub(crate) struct FourWide<'s> {
     nodes: Vec<Node>,
     /// The primitives of the leaves, leaf by leaf.
     primitives: Vec<PrimitiveId>,
-    /// Of the binary tree.
+    /// The binary tree's.
     statistics: TreeStatistics,
 }
 
@@ -55,7 +55,7 @@ impl Node {
 /// What a lane of a node refers to.
 enum Below {
     Node(usize),
-    /// Of the primitives.
+    /// A range of the primitives.
     Leaf(Range<usize>),
 }
 
@@ -145,14 +145,10 @@ impl<'s> FourWide<'s> {
     }
 
     pub(crate) fn validate(&self, primitives: Subset) -> Result<(), String> {
-        let mut seen = Seen::new(primitives);
-        let mut reached = 0;
+        let mut seen = Seen::new(primitives, self.nodes.len());
         let mut pending = if self.nodes.is_empty() { Vec::new() } else { vec![0] };
         while let Some(index) = pending.pop() {
-            reached += 1;
-            if reached > self.nodes.len() {
-                return Err("a node is below itself".into());
-            }
+            seen.node()?;
             let node = &self.nodes[index];
             for lane in 0..4 {
                 let bounds = node.boxes.get(lane);
@@ -169,9 +165,6 @@ impl<'s> FourWide<'s> {
                 }
                 pending.push(child);
             }
-        }
-        if reached < self.nodes.len() {
-            return Err(format!("{reached} of {} nodes are reached", self.nodes.len()));
         }
         seen.all()
     }

@@ -8,7 +8,7 @@ use lancer_core::intersector::{BeamIndex, Hit, Observer, Probe, Query, Traversal
 use lancer_core::scene::{PrimitiveId, Scene, Subset};
 
 use crate::cells::{Cell, RayCells, search, visited};
-use crate::margins::{rounding, slack};
+use crate::margins::{regular_slack, rounding};
 use crate::touching::{Footprint, overlap, surface_points};
 
 /// The slides' regular subdivision of space, « subdivision spatiale régulière »: a box around the scene
@@ -28,7 +28,7 @@ use crate::touching::{Footprint, overlap, surface_points};
 /// it crosses cell by cell, and in the « théière dans un stade » (teapot in a stadium): cells that suit
 /// the large are full of the small.
 ///
-/// Sources: Fujimoto, Tanaka, Iwata, *ARTS: Accelerated Ray-Tracing System*, IEEE CG&A 6(4), 1986;
+/// *Sources:* Fujimoto, Tanaka, Iwata, *ARTS: Accelerated Ray-Tracing System*, IEEE CG&A 6(4), 1986;
 /// Amanatides and Woo, *A Fast Voxel Traversal Algorithm for Ray Tracing*, Eurographics 1987.
 #[doc(alias = "subdivision spatiale régulière")]
 #[doc(alias = "grille régulière")]
@@ -74,7 +74,7 @@ impl GridBuilder {
     pub fn build<'s>(self, primitives: impl Into<Subset<'s>>) -> Grid<'s> {
         let all = primitives.into();
         let (scene, bounds) = (all.scene(), all.bounds());
-        let slack = slack(bounds);
+        let slack = regular_slack(bounds);
         let bounds = bounds.grown(slack);
         let boxes: Vec<Bounds3> =
             all.iter().map(|primitive| scene.primitive_bounds(primitive).grown(slack)).collect();
@@ -294,7 +294,7 @@ impl<'g> RayCells<'g> for Line<'g> {
 /// The cells that a ray from far away might visit.
 struct Slices<'g> {
     cells: Box<dyn Iterator<Item = Cell<'g>> + 'g>,
-    /// Of the cell that came last.
+    /// The box of the cell that came last.
     bounds: Bounds3,
 }
 
@@ -443,10 +443,10 @@ struct Axis {
     /// The parameter at which the ray meets the plane ahead: never, if it runs along it.
     crossing: f64,
     cell: i32,
-    /// By what a step changes the cell, and the last one.
+    /// What a step adds to the cell, and the last cell.
     step: i32,
     last: i32,
-    /// From a cell to the plane ahead.
+    /// What leads from a cell's number to that of the plane ahead.
     ahead: i32,
 }
 

@@ -12,7 +12,7 @@ pub use sides::Sides;
 use sides::Thick;
 
 use crate::cells::{Cell, RayCells, search, visited};
-use crate::margins::{rounding, slack};
+use crate::margins::{TIES, rounding, slack};
 use crate::sah::sah_cost;
 use crate::spatial::{
     Leaf, PARALLEL, Polygon, REFERENCES_PER_PRIMITIVE, clip, common, depth_limit, shared_allowance,
@@ -21,7 +21,7 @@ use crate::spatial::{
 /// « Subdivision spatiale irrégulière »: a tree of planes perpendicular to an axis, each put where it
 /// saves most.
 ///
-/// **Built** from the top by the surface area heuristic: a random ray that meets a convex cell meets a
+/// *Built* from the top by the surface area heuristic: a random ray that meets a convex cell meets a
 /// convex part of it with the probability S(part) / S(cell), so a plane costs
 ///
 /// ```text
@@ -34,15 +34,17 @@ use crate::spatial::{
 /// crosses the plane goes to both sides, and there only the part counts that is inside the cell
 /// ("perfect splits": the triangle is clipped). Depth is at most 8 + 1.3 log₂ N.
 ///
-/// **Walked** near cell first: the plane divides the ray's interval, the near side is visited, the far
+/// *Walked* near cell first: the plane divides the ray's interval, the near side is visited, the far
 /// side waits on a stack. As cells do not overlap, the first cell with a hit inside ends the walk; a
 /// primitive that reaches into this cell but is met in a later one does not.
 ///
-/// O(n log n) steps to build, about O(log n) cells for a ray. Wins where primitives are of uneven
-/// size and density and much space is empty; loses to a hierarchy of volumes in memory and build time,
-/// because a primitive stands in several leaves, and is tested several times.
+/// It takes O(n log n) steps to build, and about O(log n) cells for a ray.
 ///
-/// Sources: Bentley, *Multidimensional Binary Search Trees Used for Associative Searching*, CACM 18(9),
+/// *Wins* where primitives are of uneven size and density and much space is empty. *Loses* to a hierarchy of
+/// volumes in memory and build time, because a primitive stands in several leaves, and is tested several
+/// times.
+///
+/// *Sources:* Bentley, *Multidimensional Binary Search Trees Used for Associative Searching*, CACM 18(9),
 /// 1975; MacDonald, Booth, *Heuristics for Ray Tracing Using Space Subdivision*, The Visual Computer 6,
 /// 1990; Wald, Havran, *On Building Fast kd-Trees for Ray Tracing, and on Doing That in O(N log N)*,
 /// RT 2006.
@@ -52,7 +54,7 @@ pub struct KdTree<'s> {
     scene: &'s Scene,
     /// The root's cell.
     bounds: Bounds3,
-    /// In depth-first order; the first is the root.
+    /// The nodes in depth-first order; the first is the root.
     nodes: Vec<Node>,
     /// The primitives of the leaves, leaf by leaf.
     primitives: Vec<PrimitiveId>,
@@ -86,7 +88,7 @@ impl Default for KdBuilder {
     }
 }
 
-/// Up to this many primitives every candidate plane is tried, above as many as there are bins.
+/// Every candidate plane is tried for up to this many primitives; the planes between bins for more.
 const SWEEP: usize = 32;
 const BINS: usize = 64;
 
@@ -116,17 +118,15 @@ impl KdBuilder {
     pub fn build<'s>(self, primitives: impl Into<Subset<'s>>) -> KdTree<'s> {
         let all = primitives.into();
         let scene = all.scene();
-        let bounds = all.bounds();
-        let slack = slack(bounds);
-        let bounds = bounds.grown(slack);
         let reference = |primitive| {
-            let bounds = scene.primitive_bounds(primitive).grown(slack);
-            Reference { primitive, bounds }
+            let bounds = scene.primitive_bounds(primitive);
+            Reference { primitive, bounds: bounds.grown(slack(bounds)) }
         };
         let references: Vec<Reference> = all.iter().map(reference).collect();
+        let bounds = references.iter().map(|r| r.bounds).fold(Bounds3::EMPTY, Bounds3::union);
         let max_depth = depth_limit(references.len());
         let allowance = REFERENCES_PER_PRIMITIVE * references.len();
-        let root = self.subtree(scene, slack, bounds, references, max_depth, allowance);
+        let root = self.subtree(scene, bounds, references, max_depth, allowance);
         let mut tree =
             KdTree { scene, bounds, nodes: Vec::new(), primitives: Vec::new(), max_depth };
         tree.lay_out(root);
@@ -136,7 +136,6 @@ impl KdBuilder {
     fn subtree(
         &self,
         scene: &Scene,
-        slack: f64,
         cell: Bounds3,
         references: Vec<Reference>,
         levels: u32,
@@ -158,7 +157,7 @@ impl KdBuilder {
         for reference in references {
             match is_on(&reference) {
                 [true, true] => {
-                    let parts = cells.map(|half| self.part(scene, slack, &reference, half));
+                    let parts = cells.map(|half| self.part(scene, &reference, half));
                     for (side, bounds) in [&mut below, &mut above].into_iter().zip(parts) {
                         if !bounds.is_empty() {
                             side.push(Reference { bounds, ..reference });
@@ -171,19 +170,20 @@ impl KdBuilder {
         }
         let parallel = below.len() + above.len() > PARALLEL;
         let allowances = shared_allowance(allowance, [below.len(), above.len()]);
-        let below = || self.subtree(scene, slack, cells[0], below, levels - 1, allowances[0]);
-        let above = || self.subtree(scene, slack, cells[1], above, levels - 1, allowances[1]);
+        let below = || self.subtree(scene, cells[0], below, levels - 1, allowances[0]);
+        let above = || self.subtree(scene, cells[1], above, levels - 1, allowances[1]);
         let (below, above) = if parallel { rayon::join(below, above) } else { (below(), above()) };
         Subtree::Inner { axis, split, children: Box::new([below, above]) }
     }
 
     /// Bounds of the part of a primitive that is in a cell; empty when it does not come near.
-    fn part(&self, scene: &Scene, slack: f64, reference: &Reference, cell: Bounds3) -> Bounds3 {
+    fn part(&self, scene: &Scene, reference: &Reference, cell: Bounds3) -> Bounds3 {
         let within = common(reference.bounds, cell);
         if !self.perfect_splits {
             return within;
         }
         let whole = scene.primitive_bounds(reference.primitive);
+        let slack = slack(whole);
         let near = within.grown(slack);
         let part = match scene.shape(reference.primitive) {
             Shape::Triangle(index) => Bounds3::of_points(clipped(scene.mesh.corners(index), near)),
@@ -224,7 +224,7 @@ impl KdBuilder {
     /// The cost C of a plane, for `counts` primitives below and above it.
     fn cost(&self, cell: Bounds3, axis: usize, split: f64, counts: [usize; 2]) -> f64 {
         let extent = cell.max - cell.min;
-        // Only quotients of areas matter: in units of the cell nothing over- or underflows.
+        // Only quotients of areas matter. Nothing over- or underflows in units of the cell.
         let unit = extent / extent.max_element();
         let share = (split - cell.min[axis]) / extent[axis];
         let parts = [share, 1.0 - share].map(|share| {
@@ -293,7 +293,7 @@ fn consider_all(
     ends.extend(references.iter().map(|reference| reference.bounds.max[axis]));
     ends.sort_unstable_by(f64::total_cmp);
 
-    // Of the starts and ends in order, those before the plane.
+    // How many of the starts and ends, in order, lie before the plane.
     let (mut started, mut ended) = (0, 0);
     while ended < ends.len() {
         let split = match starts.get(started) {
@@ -360,11 +360,11 @@ impl<'s> KdTree<'s> {
 
     #[inline(always)]
     fn descent(&self, ray: &Ray, range: Interval) -> Option<Descent<'_>> {
-        let rounding = rounding(ray, self.bounds)?;
-        let Bounds3 { min, max } = self.bounds.grown(rounding);
+        let thickness = TIES * rounding(ray, self.bounds)?;
+        let Bounds3 { min, max } = self.bounds.grown(thickness);
         let inside = Slabs::new(ray).cross(min, max, range)?;
         let (o, d) = (ray.origin.to_array(), ray.direction.to_array());
-        let axes: [Thick; 3] = std::array::from_fn(|k| Thick::new(o[k], d[k], rounding));
+        let axes: [Thick; 3] = std::array::from_fn(|k| Thick::new(o[k], d[k], thickness));
         let mut pending = Stack::new();
         pending.push(Pending { node: 0, inside });
         Some(Descent { tree: self, axes, pending, at: 0 })
@@ -482,7 +482,7 @@ impl Traversal for KdTree<'_> {
     }
 }
 
-/// The leaves along a ray. Of what is still to be visited the nearest is last.
+/// The leaves along a ray. What is pending ends with the nearest.
 struct Descent<'t> {
     tree: &'t KdTree<'t>,
     axes: [Thick; 3],
@@ -501,7 +501,7 @@ impl<'t> RayCells<'t> for Descent<'t> {
         let tree = self.tree;
         let Pending { node, mut inside } = loop {
             let pending = self.pending.pop()?;
-            if pending.inside.min * Slabs::NEAR <= max {
+            if pending.inside.min <= max {
                 break pending;
             }
         };

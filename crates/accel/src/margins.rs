@@ -1,4 +1,4 @@
-//! By how much what computes in `f64` may err, where space is split.
+//! The margins for rounding where space is split.
 //!
 //! Space can be split exactly, rays and primitives cannot be computed exactly. A primitive may be met a
 //! rounding error beside itself, and then it must still be found in the cell where it was met. So a primitive
@@ -10,17 +10,32 @@ use lancer_core::geometry::{Bounds3, Ray};
 /// Every rounded operation in question, and few of them follow each other, errs by half an ε.
 pub(crate) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// By how much a primitive is grown before it is put into the cells of a scene within `bounds`.
+/// A tree whose planes lie where the primitives end takes so many times a ray's [`rounding`].
 ///
-/// The rounding of coordinates and planes needs 16 ε of the largest coordinate. The share of the scene's
-/// size is far more than that size rounds to, and still far less than a cell: it pays for the rounding of
-/// rays that start up to 2¹⁶ sizes away.
+/// Of two primitives met at the same t one may seem to be in a cell that the ray reaches later. The product with
+/// ε is the one of [`lancer_core::geometry::Slabs`], measured there to lose no such tie.
+pub(crate) const TIES: f64 = 16.0;
+
+/// The margin by which what lies within `bounds` is grown before it is put into cells: a dozen operations on
+/// numbers of its size may say where it is.
 pub(crate) fn slack(bounds: Bounds3) -> f64 {
     if bounds.is_empty() {
         return 0.0;
     }
     let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
-    ROUNDING * largest + (bounds.max - bounds.min).max_element() * 2.0_f64.powi(-32)
+    ROUNDING * (largest + size(bounds))
+}
+
+/// The same for regular cells of a scene within `bounds`.
+///
+/// The share of the scene's size is far more than that size rounds to, and still far less than a cell. It pays
+/// for the rounding of rays that start up to 2¹⁶ sizes away.
+pub(crate) fn regular_slack(bounds: Bounds3) -> f64 {
+    if bounds.is_empty() { 0.0 } else { slack(bounds) + size(bounds) * 2.0_f64.powi(-32) }
+}
+
+fn size(bounds: Bounds3) -> f64 {
+    (bounds.max - bounds.min).max_element()
 }
 
 /// How far beside a primitive within `bounds` a ray may run whose primitive test still finds a hit: the

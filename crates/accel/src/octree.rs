@@ -7,7 +7,7 @@ use lancer_core::scene::{PrimitiveId, Scene, Subset};
 use smallvec::SmallVec;
 
 use crate::cells::{Cell, RayCells, search, visited};
-use crate::margins::{rounding, slack};
+use crate::margins::{regular_slack, rounding};
 use crate::spatial::Leaf;
 use crate::touching::{Footprint, overlap, surface_points};
 
@@ -26,7 +26,7 @@ use crate::touching::{Footprint, overlap, surface_points};
 /// *Loses* to hierarchies of boxes and to the kd-tree: the planes lie where halving puts them, not
 /// where the primitives end, so a primitive is in several leaves and leaves are entered in vain.
 ///
-/// Sources: Glassner, *Space Subdivision for Fast Ray Tracing*, IEEE CG&A 4(10), 1984; the pieces of the
+/// *Sources:* Glassner, *Space Subdivision for Fast Ray Tracing*, IEEE CG&A 4(10), 1984; the pieces of the
 /// ray: Gargantini and Atkinson, *Ray Tracing an Octree*, Computer Graphics Forum 12(4), 1993.
 #[doc(alias = "subdivision spatiale irrégulière")]
 #[doc(alias = "arbre octal")]
@@ -48,7 +48,7 @@ pub struct Octree<'s> {
 pub struct OctreeBuilder {
     /// A cube with no more primitives than this is not cut.
     pub leaf_size: usize,
-    /// Nor is one that is the result of so many cuts.
+    /// A cube that is the result of so many cuts is not cut either.
     pub max_depth: u32,
     /// Whether a ray remembers what it was tested against last. The answers are the same.
     pub mailboxing: bool,
@@ -111,7 +111,7 @@ impl OctreeBuilder {
     pub fn build<'s>(self, primitives: impl Into<Subset<'s>>) -> Octree<'s> {
         let all = primitives.into();
         let (scene, bounds) = (all.scene(), all.bounds());
-        let slack = slack(bounds);
+        let slack = regular_slack(bounds);
         let bounds = bounds.grown(slack);
         // The scene is in the cube's lower corner: in the middle a flat one would lie on both sides of
         // a plane.
@@ -369,8 +369,8 @@ struct Visit {
     inside: Interval,
 }
 
-/// The leaves along a ray. Of what is still to be visited the nearest is last; at each depth that is
-/// seven parts of a cube at most, three but for rounding.
+/// The leaves along a ray. What is pending ends with the nearest; it has at most seven parts of a cube at each
+/// depth, three but for rounding.
 struct Descent<'i> {
     tree: &'i Octree<'i>,
     line: Line,

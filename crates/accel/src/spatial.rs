@@ -37,7 +37,7 @@ pub(crate) fn shared_allowance(allowance: usize, children: [usize; 2]) -> [usize
     [to_first, allowance - to_first]
 }
 
-/// Below this many references in a node its subtrees are built one after the other: handing them to
+/// A node of fewer references has its subtrees built one after the other: handing them to
 /// another thread would take as long.
 pub(crate) const PARALLEL: usize = 4096;
 

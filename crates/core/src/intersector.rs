@@ -58,8 +58,8 @@ impl Query {
 
 /// An index of a scene's primitives.
 ///
-/// An answer does not depend on the index: of several primitives at the same `t` the one with the
-/// smallest [`PrimitiveId`] is the hit.
+/// An answer does not depend on the index: the smallest [`PrimitiveId`] is the hit where several primitives
+/// have the same `t`.
 pub trait Intersector: Sync {
     /// The first primitive that the ray meets in `range`.
     fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit>;
@@ -325,6 +325,9 @@ impl<'s> Probe<'s> {
 }
 
 /// Brute force: every primitive for every ray. The oracle of all other indexes.
+///
+/// *Built* from nothing, *walked* in the order of the ids. *Wins* by being right at sight, and on a handful of
+/// primitives. *Loses* everywhere else: a ray costs O(n).
 #[derive(Clone, Debug)]
 pub struct LinearScan<'s>(Subset<'s>);
 

@@ -13,7 +13,7 @@ const NODE_COST: f32 = 1.0;
 pub(super) const MAX_LEAF: usize = 4;
 /// Bins along an axis. Twice as many lower the cost of a tree by less than 1 %.
 const BINS: usize = 16;
-/// At this depth the heuristic is given up and nodes are halved, which ends within log2 of 2³²
+/// The depth at which the heuristic is given up and nodes are halved, which ends within log2 of 2³²
 /// further levels: no arrangement of primitives makes the recursion deeper than [`MAX_DEPTH`].
 const SAH_DEPTH: usize = 64;
 pub(crate) const MAX_DEPTH: usize = SAH_DEPTH + 32;
@@ -109,8 +109,8 @@ fn divide(items: &mut [Item], bounds: FrameBox, depth: usize, rule: Rule) -> Opt
         let cut = Cut::best(items);
         return (too_many || pays(cut.cost)).then(|| cut.sort(items));
     }
-    let Some(plane) = best_plane(items) else { return too_many.then(|| halve(items)) };
-    (too_many || pays(plane.cost)).then(|| plane.partition(items))
+    let Some(cut) = best_bin_cut(items) else { return too_many.then(|| halve(items)) };
+    (too_many || pays(cut.cost)).then(|| cut.partition(items))
 }
 
 fn halve(items: &mut [Item]) -> usize {
@@ -143,7 +143,7 @@ fn around_centers(items: &[Item]) -> FrameBox {
     })
 }
 
-/// So many items are sorted along each axis, and all cuts are compared: that is quicker than bins, most of
+/// The most items that are sorted along each axis, to compare all cuts: that is quicker than bins, most of
 /// which would be empty.
 const FEW: usize = BINS;
 
@@ -157,7 +157,7 @@ struct Cut {
 
 impl Cut {
     /// The cheapest: between neighbours in the order of centres along an axis, where centres coincide of ids.
-    #[inline(never)] // As `best_plane`.
+    #[inline(never)] // As `best_bin_cut`.
     fn best(items: &[Item]) -> Self {
         let mut best = Self {
             order: std::array::from_fn(|k| k as u8),
@@ -166,7 +166,7 @@ impl Cut {
         };
         // Two are cut between them whatever the axis.
         for axis in 0..if items.len() == 2 { 1 } else { 3 } {
-            // As integers the centres' bits are in the order of numbers, or in the opposite if negative.
+            // The centres' bits are ordered as integers like the numbers, or the opposite way if negative.
             let mut keys = [(u64::MAX, 0); FEW];
             for ((k, item), key) in (0..).zip(items).zip(&mut keys) {
                 let bits = item.center()[axis].to_bits();
@@ -207,13 +207,20 @@ struct Bins {
     extent: f32,
 }
 
-/// The number of the bins of sizes, after the three axes.
-const SIZES: usize = 3;
+/// What items are thrown into bins by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Order {
+    /// The places of their centres along an axis.
+    Axis(usize),
+    /// Their sizes, large ones first.
+    Size,
+}
+
 /// Nodes of fewer items are not divided by size.
 const FEWEST_BY_SIZE: usize = 64;
 
 impl Bins {
-    fn of(centers: FrameBox) -> Self {
+    fn around(centers: FrameBox) -> Self {
         let width = centers.max - centers.min;
         // Where all centres coincide all are in bin 0.
         let per_unit = Vec3A::splat(BINS as f32) / width.max(Vec3A::splat(f32::MIN_POSITIVE));
@@ -229,16 +236,18 @@ impl Bins {
         (halvings as usize).min(BINS - 1)
     }
 
-    /// Whether an item is on the left side of a plane.
+    /// An item's bin in one of the orders.
     #[inline(always)]
-    fn is_left(&self, item: &Item, axis: usize, last: usize) -> bool {
-        let bin = if axis == SIZES { self.of_size(item) } else { self.index(item)[axis] };
-        bin <= last
+    fn of(&self, item: &Item, order: Order) -> usize {
+        match order {
+            Order::Axis(axis) => self.of_place(item)[axis],
+            Order::Size => self.of_size(item),
+        }
     }
 
     /// An item's bin on each axis.
     #[inline(always)]
-    fn index(&self, item: &Item) -> [usize; 3] {
+    fn of_place(&self, item: &Item) -> [usize; 3] {
         let position = (item.center() - self.start) * self.per_unit;
         // The last centre is at the far end of the last bin.
         position.min(Vec3A::splat(BINS as f32 - 1.0)).to_array().map(|x| x as usize)
@@ -265,21 +274,20 @@ impl Content {
     }
 }
 
-/// A plane between two bins, of places or of sizes, and what the primitives on its sides cost.
-struct Plane {
+/// A cut between two bins, and what the primitives on its sides cost.
+struct BinCut {
     bins: Bins,
-    /// An axis, or [`SIZES`].
-    axis: usize,
+    order: Order,
     /// The last bin on the left side.
     last: usize,
     cost: f32,
 }
 
-impl Plane {
+impl BinCut {
     fn partition(&self, items: &mut [Item]) -> usize {
         let mut left = 0;
         for k in 0..items.len() {
-            if self.bins.is_left(&items[k], self.axis, self.last) {
+            if self.bins.of(&items[k], self.order) <= self.last {
                 items.swap(left, k);
                 left += 1;
             }
@@ -310,28 +318,29 @@ fn cheapest_cut(contents: &[Content]) -> Option<(usize, f32)> {
     best
 }
 
-/// The cheapest plane with items on both sides; there is none if all centres coincide.
+/// The cheapest cut between bins with items on both sides; there is none if all centres coincide.
 #[inline(never)] // The bins must not take room on the stack of the recursion.
-fn best_plane(items: &[Item]) -> Option<Plane> {
-    let bins = Bins::of(around_centers(items));
-    let mut contents = [[Content::NONE; BINS]; 4];
+fn best_bin_cut(items: &[Item]) -> Option<BinCut> {
+    let bins = Bins::around(around_centers(items));
+    let (mut by_place, mut by_size) = ([[Content::NONE; BINS]; 3], [Content::NONE; BINS]);
     for item in items {
-        for (contents, index) in contents.iter_mut().zip(bins.index(item)) {
+        for (contents, index) in by_place.iter_mut().zip(bins.of_place(item)) {
             contents[index] = contents[index].and(Content { bounds: item.bounds, count: 1 });
         }
     }
     if items.len() >= FEWEST_BY_SIZE {
         for item in items {
-            let content = &mut contents[SIZES][bins.of_size(item)];
+            let content = &mut by_size[bins.of_size(item)];
             *content = content.and(Content { bounds: item.bounds, count: 1 });
         }
     }
-    let mut best: Option<Plane> = None;
-    for (axis, contents) in contents.iter().enumerate() {
+    let mut best: Option<BinCut> = None;
+    let axes = (0..3).map(|axis| (Order::Axis(axis), &by_place[axis]));
+    for (order, contents) in axes.chain([(Order::Size, &by_size)]) {
         if let Some((last, cost)) = cheapest_cut(contents)
             && best.as_ref().is_none_or(|best| cost < best.cost)
         {
-            best = Some(Plane { bins, axis, last, cost });
+            best = Some(BinCut { bins, order, last, cost });
         }
     }
     best
@@ -376,11 +385,11 @@ mod tests {
     #[test]
     fn the_heuristic_cuts_where_there_is_nothing() {
         let mut row = items([8.0, 0.0, 1.0].map(|x| Vec3A::new(x, 0.0, 0.0)));
-        let plane = best_plane(&row).unwrap();
-        assert_eq!((plane.axis, plane.cost), (0, 4.25));
-        assert_eq!(plane.partition(&mut row), 2);
+        let cut = best_bin_cut(&row).unwrap();
+        assert_eq!((cut.order, cut.cost), (Order::Axis(0), 4.25));
+        assert_eq!(cut.partition(&mut row), 2);
         assert_eq!(row[2].primitive, PrimitiveId(0));
-        assert!(best_plane(&items([Vec3A::ONE; 3])).is_none());
+        assert!(best_bin_cut(&items([Vec3A::ONE; 3])).is_none());
     }
 
     /// The same row, all cuts compared; and of boxes in one place the one with the least id is cut off.
@@ -409,7 +418,7 @@ mod tests {
         assert_eq!((parts(0.5), parts(1.0)), (None, Some(1)));
     }
 
-    /// From the limit on a subtree is halved at every step: so no tree is deeper than the limit says.
+    /// A subtree is halved at every step beyond the limit: so no tree is deeper than the limit says.
     #[test]
     fn below_the_limit_the_tree_is_halved() {
         // Each step along this row is nine tenths of the last: the heuristic takes off the first few.

@@ -36,15 +36,17 @@ pub enum Split {
 /// A binary hierarchy of bounding volumes, built from the root down.
 ///
 /// *Built* in O(n log n): a node's primitives are divided by a [`Split`], the parts become its
-/// children, until few are left. *Walked* near to far in about O(log n) per ray, two levels of the
-/// tree at a time: four boxes are tested together in `f32`, rounded outwards; primitives are decided in
-/// `f64`. [`BinaryTree`] has the same walk as it is taught.
+/// children, until few are left.
 ///
-/// It adapts to primitives of all sizes, needs O(n) memory whatever the scene looks like, and every
-/// primitive is in it once. It loses where boxes fit badly, such as long diagonal triangles: where
+/// *Walked* near to far in about O(log n) per ray, two levels of the tree at a time: four boxes are tested
+/// together in `f32`, rounded outwards; primitives are decided in `f64`. [`BinaryTree`] has the same walk as it
+/// is taught.
+///
+/// *Wins* where primitives are of all sizes: it adapts to them, needs O(n) memory whatever the scene looks like,
+/// and has every primitive once. *Loses* where boxes fit badly, such as those of long diagonal triangles: where
 /// boxes overlap a ray visits them all, while the cells of a subdivision never overlap.
 ///
-/// Source: Rubin and Whitted, *A 3-Dimensional Representation for Fast Rendering of Complex Scenes*,
+/// *Sources:* Rubin and Whitted, *A 3-Dimensional Representation for Fast Rendering of Complex Scenes*,
 /// SIGGRAPH 1980; Kay and Kajiya, *Ray Tracing Complex Scenes*, SIGGRAPH 1986.
 #[doc(alias = "hiérarchie de volumes englobants")]
 pub struct Bvh<'s>(FourWide<'s>);

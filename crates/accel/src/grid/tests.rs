@@ -128,7 +128,7 @@ fn a_ray_in_a_plane_stays_in_its_row() {
 fn a_lattice_suits_the_shape_of_the_scene() {
     let of = |extent: DVec3, cells: f64| {
         let bounds = Bounds3 { min: DVec3::ZERO, max: extent };
-        Lattice::of(bounds, slack(bounds), cells).resolution
+        Lattice::of(bounds, regular_slack(bounds), cells).resolution
     };
     assert_eq!(of(DVec3::ONE, 1000.0), IVec3::new(10, 10, 10));
     assert_eq!(of(DVec3::new(1.0, 0.0, 4.0), 400.0), IVec3::new(10, 1, 40));

@@ -76,7 +76,7 @@ impl Thick {
         Sides::Both { near, far }
     }
 
-    /// From when to when the ray is in the plane. In a ray parallel to the plane the two are ∞ on one
+    /// When the ray reaches the plane and when it leaves it. In a ray parallel to the plane the two are ∞ on one
     /// side, −∞ and ∞ in the plane; NaN, when one of its sides runs in the plane, compares as neither
     /// before nor after anything.
     #[inline(always)]

@@ -206,14 +206,10 @@ impl<'s> Wide<'s> {
 
     /// Checks that every box contains what is below it and that every one of these primitives is in one leaf.
     pub fn validate<'p>(&self, primitives: impl Into<Subset<'p>>) -> Result<(), String> {
-        let mut seen = Seen::new(primitives.into());
-        let mut reached = 0;
+        let mut seen = Seen::new(primitives.into(), self.nodes.len());
         let mut pending = if self.nodes.is_empty() { Vec::new() } else { vec![(0, 0)] };
         while let Some((index, depth)) = pending.pop() {
-            reached += 1;
-            if reached > self.nodes.len() {
-                return Err("a node is below itself".into());
-            }
+            seen.node()?;
             if depth >= walk::MOST_LEVELS {
                 return Err(format!("node {index} is {depth} levels deep"));
             }
@@ -237,9 +233,6 @@ impl<'s> Wide<'s> {
                 }
                 pending.push((child, depth + 1));
             }
-        }
-        if reached < self.nodes.len() {
-            return Err(format!("{reached} of {} nodes are reached", self.nodes.len()));
         }
         seen.all()
     }

@@ -24,11 +24,11 @@ pub struct ConvexVolume {
     half_spaces: SmallVec<[HalfSpace; 16]>,
 }
 
-/// By how much a sign that rounding decides may be wrong, for a product of unit vectors.
+/// The error up to which rounding may decide the sign of a product of unit vectors.
 const DOUBT: f64 = 32.0 * f64::EPSILON;
 
 impl ConvexVolume {
-    /// An intersection of half-spaces; of none it is all of space. The axis' direction is made a unit
+    /// An intersection of half-spaces; it is all of space if there are none. The axis' direction is made a unit
     /// vector.
     ///
     /// Boxes that pass an edge of the volume may be let in, though no single half-space shows it.
@@ -46,7 +46,7 @@ impl ConvexVolume {
     /// Directions, not points: far from the origin a point seen from the apex has lost its last digits, and
     /// a ray in the pyramid's border would lie outside.
     ///
-    /// Beside its faces it gets all half-spaces that the separating axis theorem asks for: two convex
+    /// It gets its faces and all half-spaces that the separating axis theorem asks for: two convex
     /// bodies are disjoint if and only if there is a gap along a normal of a face of one, or along the
     /// product of an edge of each. The edges of boxes are known beforehand, so a box beside the pyramid is
     /// refused unless the gap is down to rounding.
@@ -183,7 +183,7 @@ fn unit(v: DVec3) -> DVec3 {
 
 /// A lower bound of n·(p − a).
 ///
-/// With p componentwise so chosen that n·p is least in a box it is one for the whole box. Each term is
+/// It is one for a whole box if p is its corner where n·p is least. Each term is
 /// lowered by more than it and the sum round by. Every step is a monotone function of p as it is rounded.
 #[inline]
 fn least(n: DVec3, a: DVec3, p: DVec3) -> f64 {

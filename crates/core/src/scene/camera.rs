@@ -37,7 +37,7 @@ impl Camera {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrimaryRays {
     eye: DVec3,
-    /// From the eye to the picture's upper left corner, on the plane at distance 1.
+    /// The way from the eye to the picture's upper left corner, on the plane at distance 1.
     corner: DVec3,
     across: DVec3,
     down: DVec3,
