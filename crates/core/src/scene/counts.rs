@@ -1,7 +1,5 @@
 use glam::DVec3;
 
-use super::Scene;
-
 /// The size of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Counts {
@@ -15,20 +13,6 @@ pub struct Counts {
     pub zero_area: usize,
     /// Spheres.
     pub spheres: usize,
-}
-
-impl Scene {
-    /// Counts what the scene is made of.
-    pub fn counts(&self) -> Counts {
-        let mesh = &self.mesh;
-        Counts {
-            vertices: mesh.positions.len(),
-            faces: mesh.faces.len(),
-            triangles: mesh.triangles.len(),
-            zero_area: (0..mesh.triangles.len()).filter(|&i| is_zero_area(mesh.corners(i))).count(),
-            spheres: self.spheres.len(),
-        }
-    }
 }
 
 /// Whether a triangle's corners are on one line, up to the rounding of their coordinates.

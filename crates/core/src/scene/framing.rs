@@ -4,25 +4,9 @@ use std::fmt;
 use glam::DVec3;
 
 use super::load::MAX_COORDINATE;
-use super::{Camera, PointLight, Scene};
+use super::{Camera, PointLight};
 use crate::Rgb;
 use crate::geometry::Sphere;
-
-impl Scene {
-    /// A sphere around every shape, centred in their bounding box; `None` in an empty scene.
-    pub fn bounding_sphere(&self) -> Option<Sphere> {
-        let points = || {
-            let vertices = self.mesh.positions.iter().map(|&p| (p, 0.0));
-            vertices.chain(self.spheres.iter().map(|s| (s.shape.center, s.shape.radius)))
-        };
-        let (min, max) = points()
-            .map(|(p, r)| (p - r, p + r))
-            .reduce(|(a, b), (min, max)| (a.min(min), b.max(max)))?;
-        let center = 0.5 * (min + max);
-        let radius = points().map(|(p, r)| (p - center).length() + r).fold(0.0, f64::max);
-        Some(Sphere { center, radius })
-    }
-}
 
 /// Why a [`Camera`] cannot make a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use super::Scene;
-use crate::geometry::{Bounds3, ConvexVolume};
+use super::counts::{Counts, is_zero_area};
+use crate::geometry::{Bounds3, ConvexVolume, Sphere};
 
 /// One primitive of a scene: triangles are numbered first, in mesh order, then spheres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -61,6 +62,32 @@ impl Scene {
     /// The smallest box around everything.
     pub fn bounds(&self) -> Bounds3 {
         Subset::from(self).bounds()
+    }
+
+    /// A sphere around every shape, centred in their bounding box; `None` in an empty scene.
+    pub fn bounding_sphere(&self) -> Option<Sphere> {
+        let points = || {
+            let vertices = self.mesh.positions.iter().map(|&p| (p, 0.0));
+            vertices.chain(self.spheres.iter().map(|s| (s.shape.center, s.shape.radius)))
+        };
+        let (min, max) = points()
+            .map(|(p, r)| (p - r, p + r))
+            .reduce(|(a, b), (min, max)| (a.min(min), b.max(max)))?;
+        let center = 0.5 * (min + max);
+        let radius = points().map(|(p, r)| (p - center).length() + r).fold(0.0, f64::max);
+        Some(Sphere { center, radius })
+    }
+
+    /// Counts what the scene is made of.
+    pub fn counts(&self) -> Counts {
+        let mesh = &self.mesh;
+        Counts {
+            vertices: mesh.positions.len(),
+            faces: mesh.faces.len(),
+            triangles: mesh.triangles.len(),
+            zero_area: (0..mesh.triangles.len()).filter(|&i| is_zero_area(mesh.corners(i))).count(),
+            spheres: self.spheres.len(),
+        }
     }
 
     /// Some primitives, in any order; what is named twice counts once.
