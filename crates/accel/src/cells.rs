@@ -15,10 +15,12 @@ pub struct Cell<'i> {
     pub primitives: &'i [PrimitiveId],
 }
 
+/// Where a ray enters a cell, up to rounding, and what comes near the cell.
+pub(crate) type CellEntry<'i> = (f64, &'i [PrimitiveId]);
+
 /// The cells that a ray visits, near ones first.
 pub(crate) trait RayCells<'i> {
-    /// The parameter at which the ray enters its next cell, if that is before `max`, up to rounding, and what
-    /// comes near the cell.
+    /// The next cell that the ray enters before `max`.
     fn next<O: Observer>(&mut self, max: f64, observer: &mut O)
     -> Option<(f64, &'i [PrimitiveId])>;
 

@@ -7,7 +7,7 @@ use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
 use lancer_core::intersector::{BeamIndex, Hit, Observer, Probe, Query, Traversal};
 use lancer_core::scene::{PrimitiveId, Scene, Subset};
 
-use crate::cells::{Cell, RayCells, search, visited};
+use crate::cells::{Cell, CellEntry, RayCells, search, visited};
 use crate::margins::{regular_slack, rounding};
 use crate::touching::{Footprint, overlap, surface_points};
 
@@ -241,11 +241,7 @@ enum Path<'g> {
 }
 
 impl<'g> RayCells<'g> for Path<'g> {
-    fn next<O: Observer>(
-        &mut self,
-        max: f64,
-        observer: &mut O,
-    ) -> Option<(f64, &'g [PrimitiveId])> {
+    fn next<O: Observer>(&mut self, max: f64, observer: &mut O) -> Option<CellEntry<'g>> {
         match self {
             Self::Line(line) => line.next(max, observer),
             Self::Slices(slices) => slices.next(max, observer),
@@ -270,11 +266,7 @@ struct Line<'g> {
 
 impl<'g> RayCells<'g> for Line<'g> {
     #[inline(always)]
-    fn next<O: Observer>(
-        &mut self,
-        max: f64,
-        observer: &mut O,
-    ) -> Option<(f64, &'g [PrimitiveId])> {
+    fn next<O: Observer>(&mut self, max: f64, observer: &mut O) -> Option<CellEntry<'g>> {
         let enter = self.dda.enter;
         if enter * Slabs::NEAR > max {
             return None;
@@ -299,11 +291,7 @@ struct Slices<'g> {
 }
 
 impl<'g> RayCells<'g> for Slices<'g> {
-    fn next<O: Observer>(
-        &mut self,
-        max: f64,
-        observer: &mut O,
-    ) -> Option<(f64, &'g [PrimitiveId])> {
+    fn next<O: Observer>(&mut self, max: f64, observer: &mut O) -> Option<CellEntry<'g>> {
         let Cell { bounds, enter, primitives } =
             self.cells.next().filter(|cell| cell.enter * Slabs::NEAR <= max)?;
         self.bounds = bounds;

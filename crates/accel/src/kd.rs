@@ -11,7 +11,7 @@ use smallvec::SmallVec;
 pub use sides::Sides;
 use sides::Thick;
 
-use crate::cells::{Cell, RayCells, search, visited};
+use crate::cells::{Cell, CellEntry, RayCells, search, visited};
 use crate::margins::{TIES, rounding, slack};
 use crate::sah::sah_cost;
 use crate::spatial::{
@@ -493,11 +493,7 @@ struct Descent<'t> {
 
 impl<'t> RayCells<'t> for Descent<'t> {
     #[inline(always)]
-    fn next<O: Observer>(
-        &mut self,
-        max: f64,
-        observer: &mut O,
-    ) -> Option<(f64, &'t [PrimitiveId])> {
+    fn next<O: Observer>(&mut self, max: f64, observer: &mut O) -> Option<CellEntry<'t>> {
         let tree = self.tree;
         let Pending { node, mut inside } = loop {
             let pending = self.pending.pop()?;

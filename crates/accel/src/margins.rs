@@ -19,11 +19,7 @@ pub(crate) const TIES: f64 = 16.0;
 /// The margin by which what lies within `bounds` is grown before it is put into cells: a dozen operations on
 /// numbers of its size may say where it is.
 pub(crate) fn slack(bounds: Bounds3) -> f64 {
-    if bounds.is_empty() {
-        return 0.0;
-    }
-    let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
-    ROUNDING * (largest + size(bounds))
+    slack_with(bounds, ROUNDING)
 }
 
 /// The same for regular cells of a scene within `bounds`.
@@ -31,11 +27,16 @@ pub(crate) fn slack(bounds: Bounds3) -> f64 {
 /// The share of the scene's size is far more than that size rounds to, and still far less than a cell. It pays
 /// for the rounding of rays that start up to 2¹⁶ sizes away.
 pub(crate) fn regular_slack(bounds: Bounds3) -> f64 {
-    if bounds.is_empty() { 0.0 } else { slack(bounds) + size(bounds) * 2.0_f64.powi(-32) }
+    slack_with(bounds, 2.0_f64.powi(-32))
 }
 
-fn size(bounds: Bounds3) -> f64 {
-    (bounds.max - bounds.min).max_element()
+/// What the largest coordinate rounds by, and this share of the size.
+fn slack_with(bounds: Bounds3, share: f64) -> f64 {
+    if bounds.is_empty() {
+        return 0.0;
+    }
+    let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
+    ROUNDING * largest + share * (bounds.max - bounds.min).max_element()
 }
 
 /// How far beside a primitive within `bounds` a ray may run whose primitive test still finds a hit: the

@@ -18,7 +18,7 @@ use crate::four_wide::FourWide;
 /// *Walked* as [`crate::Bvh`], two levels at a time. The library's own walk and triangle test are made for
 /// speed and lose rays aimed at edges and vertices: only its tree is taken over.
 ///
-/// *Wins* by its trees, which are good ones. *Loses* to [`crate::Bvh`] in build time.
+/// *Wins* over a tree of medians. *Loses* to [`crate::Bvh`], whose trees spare more tests (plate 4.3).
 ///
 /// *Sources:* Meister and Bittner, *Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy
 /// Construction*, IEEE TVCG 24(3), 2018; Meister and Bittner, *Parallel Reinsertion for Bounding Volume

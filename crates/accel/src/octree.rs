@@ -6,7 +6,7 @@ use lancer_core::intersector::{Hit, Observer, Probe, Query, Traversal};
 use lancer_core::scene::{PrimitiveId, Scene, Subset};
 use smallvec::SmallVec;
 
-use crate::cells::{Cell, RayCells, search, visited};
+use crate::cells::{Cell, CellEntry, RayCells, search, visited};
 use crate::margins::{regular_slack, rounding};
 use crate::spatial::Leaf;
 use crate::touching::{Footprint, overlap, surface_points};
@@ -404,11 +404,7 @@ impl Descent<'_> {
 
 impl<'i> RayCells<'i> for Descent<'i> {
     #[inline(always)]
-    fn next<O: Observer>(
-        &mut self,
-        max: f64,
-        observer: &mut O,
-    ) -> Option<(f64, &'i [PrimitiveId])> {
+    fn next<O: Observer>(&mut self, max: f64, observer: &mut O) -> Option<CellEntry<'i>> {
         loop {
             let Visit { node, cube, inside } = self.pending.pop()?;
             if inside.min * Slabs::NEAR > max {

@@ -73,7 +73,7 @@ impl ConvexVolume {
                 least = if beyond < least { beyond } else { least };
                 most = if beyond > most { beyond } else { most };
             }
-            // Most normals support nothing: they need no root.
+            // The sides are told without a root.
             let doubt = DOUBT * DOUBT * squared;
             if most * most <= doubt {
                 volume.support(normal, &edges, &per_inside, inwards);
@@ -87,11 +87,13 @@ impl ConvexVolume {
             consider(edge.cross(edges[(k + 1) % edges.len()] - edge));
         }
         DVec3::AXES.into_iter().for_each(&mut consider);
-        for axis in 0..if edges.is_empty() { 0 } else { 3 } {
+        for axis in 0..3 {
             // Seen along the axis, only the outermost edges can have all others on one side.
             let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-            let (mut first, mut last) = (edges[0], edges[0]);
-            for &edge in &edges[1..] {
+            let mut seen = edges.iter().copied().filter(|edge| edge[u] != 0.0 || edge[v] != 0.0);
+            let Some(mut first) = seen.next() else { continue };
+            let mut last = first;
+            for edge in seen {
                 if first[u] * edge[v] < first[v] * edge[u] {
                     first = edge;
                 } else if last[u] * edge[v] > last[v] * edge[u] {
