@@ -289,8 +289,8 @@ fn the_tree_tests_few_primitives() {
     for _ in 0..500 {
         let ray = aimed("at an edge", &scene.mesh, DVec3::ZERO, &mut || random.unit());
         let before = few;
-        let wanted = oracle.walk(&Query::closest(ray, Interval::POSITIVE), &mut all);
-        assert_eq!(index.walk(&Query::closest(ray, Interval::POSITIVE), &mut few), wanted);
+        let wanted = oracle.walk(Query::closest(&ray, Interval::POSITIVE), &mut all);
+        assert_eq!(index.walk(Query::closest(&ray, Interval::POSITIVE), &mut few), wanted);
         assert!(few.primitives > before.primitives && few.boxes > before.boxes, "a hit was tested");
     }
     assert_eq!((all.primitives, all.boxes), (500 * 5120, 0));

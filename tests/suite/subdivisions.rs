@@ -168,10 +168,10 @@ fn mailboxes_change_no_bit() {
         let ray = aimed(&scene, &mut random);
         let [a, b, c, d] = &mut counts;
         let hits = [
-            grids[0].walk(&Query::closest(ray, Interval::POSITIVE), a),
-            grids[1].walk(&Query::closest(ray, Interval::POSITIVE), b),
-            octrees[0].walk(&Query::closest(ray, Interval::POSITIVE), c),
-            octrees[1].walk(&Query::closest(ray, Interval::POSITIVE), d),
+            grids[0].walk(Query::closest(&ray, Interval::POSITIVE), a),
+            grids[1].walk(Query::closest(&ray, Interval::POSITIVE), b),
+            octrees[0].walk(Query::closest(&ray, Interval::POSITIVE), c),
+            octrees[1].walk(Query::closest(&ray, Interval::POSITIVE), d),
         ];
         assert!(hits.iter().all(|hit| *hit == hits[0]), "{hits:?}");
     }
@@ -205,8 +205,8 @@ fn a_grid_loses_the_teapot_in_the_stadium() {
     for _ in 0..100 {
         let origin = 3.0 * random.direction();
         let ray = Ray::new(origin, random.in_cube(0.5) - origin);
-        let hit = grid.walk(&Query::closest(ray, Interval::POSITIVE), &mut in_grid);
-        assert_eq!(octree.walk(&Query::closest(ray, Interval::POSITIVE), &mut in_octree), hit);
+        let hit = grid.walk(Query::closest(&ray, Interval::POSITIVE), &mut in_grid);
+        assert_eq!(octree.walk(Query::closest(&ray, Interval::POSITIVE), &mut in_octree), hit);
     }
     assert!(in_grid.primitives > 100 * 1_000, "{in_grid:?}");
     assert!(in_octree.primitives < 100 * 100, "{in_octree:?}");

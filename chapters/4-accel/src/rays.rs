@@ -45,7 +45,7 @@ pub struct Rays {
     /// Where they come from.
     pub kind: Kind,
     /// The rays.
-    pub queries: Vec<Query>,
+    pub queries: Vec<Query<Ray>>,
 }
 
 impl Rays {
@@ -77,7 +77,7 @@ impl Rays {
 
     /// Asks an index everything, and returns how many rays hit.
     pub fn trace(&self, index: &dyn Intersector) -> usize {
-        let hits = |query: &&Query| match query.wanted {
+        let hits = |query: &&Query<Ray>| match query.wanted {
             Wanted::Closest => index.closest_hit(&query.ray, query.range).is_some(),
             Wanted::Any => index.occluded(&query.ray, query.range),
         };
@@ -87,7 +87,7 @@ impl Rays {
     /// The answers of an index, and its work.
     pub fn watch(&self, index: &dyn Intersector) -> (Vec<Option<Hit>>, TestCounts) {
         let mut counts = TestCounts::default();
-        let answer = |query: &Query| index.watch(query, &mut counts);
+        let answer = |query: &Query<Ray>| index.watch(query.asked(), &mut counts);
         (self.queries.iter().map(answer).collect(), counts)
     }
 

@@ -83,13 +83,13 @@ fn records_are_complete_and_in_the_right_place() {
                 let ray = rays.through(f64::from(k % 8) + 0.5, f64::from(k / 8) + 0.5);
                 let mut recorder = Recorder::new(&scene, &ray, Interval::POSITIVE);
                 let answer =
-                    built.index.watch(&Query::closest(ray, Interval::POSITIVE), &mut recorder);
+                    built.index.watch(Query::closest(&ray, Interval::POSITIVE), &mut recorder);
                 let Recorder { events, counts, .. } = recorder;
                 assert_eq!(answer, oracle.closest_hit(&ray, Interval::POSITIVE));
                 assert_eq!(events.last().and_then(|event| event.best), answer);
                 assert_eq!(counted(&events), counts);
                 let mut watched = TestCounts::default();
-                built.index.watch(&Query::closest(ray, Interval::POSITIVE), &mut watched);
+                built.index.watch(Query::closest(&ray, Interval::POSITIVE), &mut watched);
                 assert_eq!(counts, watched);
 
                 let on_the_way = |event: &Event| match event.kind {

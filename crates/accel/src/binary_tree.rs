@@ -1,5 +1,6 @@
 use std::ops::Range;
 
+use lancer_core::geometry::Ray;
 use lancer_core::intersector::{Hit, Observer, Probe, Query, Traversal, Wanted};
 use lancer_core::scene::{PrimitiveId, Scene, Subset};
 
@@ -171,14 +172,14 @@ impl<O: Observer> Descent<'_, O> {
 
 impl Traversal for BinaryTree<'_> {
     /// Visits the primitives whose boxes the ray meets, the nearer child first, until any hit will do.
-    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
+    fn walk<O: Observer>(&self, query: Query<&Ray>, observer: &mut O) -> Option<Hit> {
         let root = self.nodes.first()?;
-        let slabs = FourSlabs::new(&query.ray, &self.frame);
+        let slabs = FourSlabs::new(query.ray, &self.frame);
         let mut descent = Descent {
             tree: self,
             slabs,
             max: slabs.parameter(query.range.max),
-            probe: Probe::new(self.scene, &query.ray, query.range),
+            probe: Probe::new(self.scene, query.ray, query.range),
             wanted: query.wanted,
             observer,
         };

@@ -365,11 +365,11 @@ impl<'s> BspTree<'s> {
     #[inline(always)]
     fn walk_leaves<O: Observer>(
         &self,
-        query: &Query,
+        query: Query<&Ray>,
         observer: &mut O,
         mut enter_leaf: impl FnMut(usize),
     ) -> Option<Hit> {
-        let &Query { ref ray, range, wanted } = query;
+        let Query { ray, range, wanted } = query;
         let mut probe = Probe::new(self.scene, ray, range);
         // Rounding may move the ray, or the polygon that it meets, across a plane.
         let thickness = TIES * rounding(ray, self.bounds)? + 2.0 * self.slack;
@@ -463,7 +463,7 @@ impl<'s> BspTree<'s> {
     /// The numbers of the cells that the search for the closest hit visits, in this order.
     pub fn visited_leaves(&self, ray: &Ray, range: Interval) -> Vec<usize> {
         let mut visited = Vec::new();
-        self.walk_leaves(&Query::closest(*ray, range), &mut (), |node| visited.push(node));
+        self.walk_leaves(Query::closest(ray, range), &mut (), |node| visited.push(node));
         visited.into_iter().map(|node| self.number(node)).collect()
     }
 
@@ -534,7 +534,7 @@ impl<'s> BspTree<'s> {
 impl Traversal for BspTree<'_> {
     /// Visits the cells along the ray until one holds a hit, or any will do.
     #[inline]
-    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
+    fn walk<O: Observer>(&self, query: Query<&Ray>, observer: &mut O) -> Option<Hit> {
         self.walk_leaves(query, observer, |_| {})
     }
 }

@@ -1,6 +1,6 @@
 use std::ops::Range;
 
-use lancer_core::geometry::ConvexVolume;
+use lancer_core::geometry::{ConvexVolume, Ray};
 use lancer_core::intersector::{Hit, Observer, Probe, Query, Wanted};
 use lancer_core::scene::{PrimitiveId, Scene, Subset};
 use smallvec::SmallVec;
@@ -80,9 +80,9 @@ impl<'s> FourWide<'s> {
     }
 
     #[inline]
-    pub(crate) fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
-        let mut probe = Probe::new(self.scene, &query.ray, query.range);
-        let slabs = FourSlabs::new(&query.ray, &self.frame);
+    pub(crate) fn walk<O: Observer>(&self, query: Query<&Ray>, observer: &mut O) -> Option<Hit> {
+        let mut probe = Probe::new(self.scene, query.ray, query.range);
+        let slabs = FourSlabs::new(query.ray, &self.frame);
         let mut max = slabs.parameter(query.range.max);
         let mut pending = Pending::default();
         let mut next = self.nodes.first();

@@ -220,8 +220,8 @@ impl Traversal for Grid<'_> {
     /// Visits the primitives of cell after cell along the ray, until any hit will do or the closest is
     /// nearer than the next cell.
     #[inline]
-    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
-        let &Query { ref ray, range, wanted } = query;
+    fn walk<O: Observer>(&self, query: Query<&Ray>, observer: &mut O) -> Option<Hit> {
+        let Query { ray, range, wanted } = query;
         let probe = Probe::new(self.scene, ray, range);
         match self.path(ray, range)? {
             Path::Line(line) => search(line, probe, self.mailboxing, wanted, observer),

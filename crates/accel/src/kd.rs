@@ -475,8 +475,8 @@ impl<'s> KdTree<'s> {
 impl Traversal for KdTree<'_> {
     /// Visits the cells along the ray until one holds a hit, or any will do.
     #[inline]
-    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
-        let &Query { ref ray, range, wanted } = query;
+    fn walk<O: Observer>(&self, query: Query<&Ray>, observer: &mut O) -> Option<Hit> {
+        let Query { ray, range, wanted } = query;
         let descent = self.descent(ray, range)?;
         search(descent, Probe::new(self.scene, ray, range), false, wanted, observer)
     }

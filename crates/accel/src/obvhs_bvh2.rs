@@ -1,4 +1,5 @@
 use glam::Vec3A;
+use lancer_core::geometry::Ray;
 use lancer_core::intersector::{Hit, Observer, Query, Traversal};
 use lancer_core::scene::{PrimitiveId, Subset};
 use obvhs::BvhBuildParams;
@@ -95,7 +96,7 @@ impl Traversal for ObvhsBvh2<'_> {
     /// Visits the primitives whose boxes the ray meets, the leaves of a node before its other
     /// children and the nearest of those next, until any hit will do.
     #[inline]
-    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
+    fn walk<O: Observer>(&self, query: Query<&Ray>, observer: &mut O) -> Option<Hit> {
         self.0.walk(query, observer)
     }
 }

@@ -1,4 +1,5 @@
 use glam::Vec4;
+use lancer_core::geometry::Ray;
 use lancer_core::intersector::{Hit, Observer, Probe, Query, Traversal, Wanted};
 use lancer_core::scene::{PrimitiveId, Scene, Subset};
 use obvhs::BvhBuildParams;
@@ -110,9 +111,9 @@ impl Traversal for ObvhsCwbvh<'_> {
     /// Visits the primitives whose boxes the ray meets, the leaves of a node before its other
     /// children and the nearest of those next, until any hit will do.
     #[inline]
-    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
-        let mut probe = Probe::new(self.scene, &query.ray, query.range);
-        let slabs = FourSlabs::new(&query.ray, &self.frame);
+    fn walk<O: Observer>(&self, query: Query<&Ray>, observer: &mut O) -> Option<Hit> {
+        let mut probe = Probe::new(self.scene, query.ray, query.range);
+        let slabs = FourSlabs::new(query.ray, &self.frame);
         let mut max = slabs.parameter(query.range.max);
         let mut pending = Pending::default();
         let mut next = self.nodes.first();

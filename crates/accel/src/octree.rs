@@ -298,8 +298,8 @@ impl Traversal for Octree<'_> {
     /// Visits the primitives of leaf after leaf along the ray, until any hit will do or the closest is
     /// nearer than all other cubes.
     #[inline]
-    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
-        let &Query { ref ray, range, wanted } = query;
+    fn walk<O: Observer>(&self, query: Query<&Ray>, observer: &mut O) -> Option<Hit> {
+        let Query { ray, range, wanted } = query;
         let descent = self.descent(ray, range)?;
         search(descent, Probe::new(self.scene, ray, range), self.mailboxing, wanted, observer)
     }

@@ -197,7 +197,7 @@ mod tests {
                         let wanted = oracle.closest_hit(ray, Interval::POSITIVE);
                         let got = index.closest_hit(ray, Interval::POSITIVE);
                         assert_eq!(got, wanted, "{name}, {share}: {} {ray:?}", structure.name);
-                        let any = index.watch(&Query::any(*ray, Interval::POSITIVE), &mut ());
+                        let any = index.watch(Query::any(ray, Interval::POSITIVE), &mut ());
                         let is_among = any.is_none_or(|hit| of.place(hit.primitive).is_some());
                         assert!(any.is_some() == wanted.is_some() && is_among, "{name}: {any:?}");
                         hits += usize::from(wanted.is_some());

@@ -32,27 +32,38 @@ pub enum Wanted {
 }
 
 /// What an index is asked: whether and where a ray meets something.
+///
+/// An index is asked about a [`Ray`] that somebody else holds: one copied on the way would be read again before it has
+/// been written, for which the processor waits. Where queries are kept they hold their rays themselves.
 #[derive(Clone, Copy, Debug)]
-pub struct Query {
-    /// The ray.
-    pub ray: Ray,
+pub struct Query<R> {
+    /// The ray, or a reference to it.
+    pub ray: R,
     /// Where it looks.
     pub range: Interval,
     /// What answers it.
     pub wanted: Wanted,
 }
 
-impl Query {
+impl<R> Query<R> {
     /// Asks for the closest hit.
     #[inline]
-    pub const fn closest(ray: Ray, range: Interval) -> Self {
+    pub const fn closest(ray: R, range: Interval) -> Self {
         Self { ray, range, wanted: Wanted::Closest }
     }
 
     /// Asks for any hit.
     #[inline]
-    pub const fn any(ray: Ray, range: Interval) -> Self {
+    pub const fn any(ray: R, range: Interval) -> Self {
         Self { ray, range, wanted: Wanted::Any }
+    }
+}
+
+impl Query<Ray> {
+    /// The same question, to be asked.
+    #[inline]
+    pub const fn asked(&self) -> Query<&Ray> {
+        Query { ray: &self.ray, range: self.range, wanted: self.wanted }
     }
 }
 
@@ -82,7 +93,7 @@ pub trait Intersector: Sync {
 
     /// Answers as [`Intersector::closest_hit`] or, if any hit will do, as [`Intersector::occluded`] with the
     /// hit met first, and tells the observer its work.
-    fn watch(&self, query: &Query, observer: &mut dyn Observer) -> Option<Hit>;
+    fn watch(&self, query: Query<&Ray>, observer: &mut dyn Observer) -> Option<Hit>;
 
     /// The same index as beams ask it, if they can.
     fn beams(&self) -> Option<&dyn BeamIndex> {
@@ -94,7 +105,7 @@ pub trait Intersector: Sync {
 pub trait Traversal: Sync {
     /// Visits primitives that the ray may meet in its range until none can be nearer than the closest met
     /// or, if any hit will do, one is met. Returns the closest.
-    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit>;
+    fn walk<O: Observer>(&self, query: Query<&Ray>, observer: &mut O) -> Option<Hit>;
 
     /// What [`Intersector::beams`] says.
     fn beams(&self) -> Option<&dyn BeamIndex> {
@@ -104,14 +115,14 @@ pub trait Traversal: Sync {
 
 impl<T: Traversal> Intersector for T {
     fn closest_hit(&self, ray: &Ray, range: Interval) -> Option<Hit> {
-        self.walk(&Query::closest(*ray, range), &mut ())
+        self.walk(Query::closest(ray, range), &mut ())
     }
 
     fn occluded(&self, ray: &Ray, range: Interval) -> bool {
-        self.walk(&Query::any(*ray, range), &mut ()).is_some()
+        self.walk(Query::any(ray, range), &mut ()).is_some()
     }
 
-    fn watch(&self, query: &Query, mut observer: &mut dyn Observer) -> Option<Hit> {
+    fn watch(&self, query: Query<&Ray>, mut observer: &mut dyn Observer) -> Option<Hit> {
         self.walk(query, &mut observer)
     }
 
@@ -346,8 +357,8 @@ impl<'s> LinearScan<'s> {
 impl Traversal for LinearScan<'_> {
     /// Visits the primitives in order until any hit will do.
     #[inline]
-    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
-        let mut probe = Probe::new(self.0.scene(), &query.ray, query.range);
+    fn walk<O: Observer>(&self, query: Query<&Ray>, observer: &mut O) -> Option<Hit> {
+        let mut probe = Probe::new(self.0.scene(), query.ray, query.range);
         for primitive in self.0.iter() {
             observer.primitive_test(primitive);
             if probe.test(primitive) && query.wanted == Wanted::Any {

@@ -104,18 +104,8 @@ impl<C: AddAssign + Default + Send> Film<C> {
         control: Control,
         fill: impl Fn(&mut Tile<C>) + Sync,
     ) -> Result<(), Cancelled> {
-        let pixels_done = AtomicU64::new(0);
-        self.tiles.par_iter_mut().for_each(|tile| {
-            if control.is_cancelled() {
-                return;
-            }
-            let pixels = tile.size.pixels();
-            tile.sums.resize(pixels, Rgb::ZERO);
-            tile.taken.resize(pixels, 0);
-            fill(tile);
-            let pixels = pixels as u64;
-            (control.progress)(pixels_done.fetch_add(pixels, Ordering::Relaxed) + pixels);
-        });
+        let done = AtomicU64::new(0);
+        self.tiles.par_iter_mut().for_each(|tile| tile.pass(control, &done, &fill));
         if control.is_cancelled() { Err(Cancelled) } else { Ok(()) }
     }
 
@@ -134,21 +124,50 @@ impl<C: AddAssign + Default + Send> Film<C> {
 
     /// The picture as it stands: a pixel is the mean of its samples, black without any.
     pub fn finish(self) -> Rendering<C> {
-        let mut image = Image::new(self.size);
-        let mut samples = vec![0; self.size.pixels()];
+        Self::assembled(self.size, self.tiles.into_par_iter().map(Tile::developed).collect())
+    }
+
+    /// [`Film::fill`] and [`Film::finish`] in one: the sums of a tile are given back as soon as it is done.
+    ///
+    /// # Errors
+    /// As [`Film::fill`].
+    pub fn fill_and_finish(
+        self,
+        control: Control,
+        fill: impl Fn(&mut Tile<C>) + Sync,
+    ) -> Result<Rendering<C>, Cancelled> {
+        let done = AtomicU64::new(0);
+        let developed = |mut tile: Tile<C>| {
+            tile.pass(control, &done, &fill);
+            tile.developed()
+        };
+        let tiles = self.tiles.into_par_iter().map(developed).collect();
+        if control.is_cancelled() { Err(Cancelled) } else { Ok(Self::assembled(self.size, tiles)) }
+    }
+
+    fn assembled(size: ImageSize, tiles: Vec<Developed<C>>) -> Rendering<C> {
+        let (mut image, mut samples) = (Image::new(size), vec![0; size.pixels()]);
         let mut counts = C::default();
-        let developed = |tile: Tile<C>| (tile.pixels(), tile);
-        let tiles: Vec<_> = self.tiles.into_par_iter().map(developed).collect();
-        for (pixels, tile) in tiles {
-            image.paste(tile.x, tile.y, tile.size, &pixels);
+        for tile in tiles {
+            image.paste(tile.x, tile.y, tile.size, &tile.pixels);
             for (row, taken) in tile.taken.chunks(tile.size.width as usize).enumerate() {
-                let start = (tile.y as usize + row) * self.size.width as usize + tile.x as usize;
+                let start = (tile.y as usize + row) * size.width as usize + tile.x as usize;
                 samples[start..start + taken.len()].copy_from_slice(taken);
             }
             counts += tile.counts;
         }
         Rendering { image, samples, counts }
     }
+}
+
+/// A tile whose sums have become pixels.
+struct Developed<C> {
+    x: u32,
+    y: u32,
+    size: ImageSize,
+    pixels: Vec<[f32; 3]>,
+    taken: Vec<u32>,
+    counts: C,
 }
 
 impl<C> Tile<C> {
@@ -215,12 +234,29 @@ impl<C> Tile<C> {
         samples.clear();
     }
 
-    /// Its pixels as they are stored.
-    fn pixels(&self) -> Vec<[f32; 3]> {
-        let mean =
-            |(sum, taken): (&Rgb, &u32)| (*sum / f64::from((*taken).max(1))).to_array().map(narrow);
-        let pixels: Vec<_> = self.sums.iter().zip(&self.taken).map(mean).collect();
-        if pixels.is_empty() { vec![[0.0; 3]; self.size.pixels()] } else { pixels }
+    /// Lets `fill` go through the tile unless it is cancelled, and tells how many pixels are done by then.
+    fn pass(&mut self, control: Control, done: &AtomicU64, fill: &impl Fn(&mut Self)) {
+        if control.is_cancelled() {
+            return;
+        }
+        let pixels = self.size.pixels();
+        self.sums.resize(pixels, Rgb::ZERO);
+        self.taken.resize(pixels, 0);
+        fill(self);
+        let pixels = pixels as u64;
+        (control.progress)(done.fetch_add(pixels, Ordering::Relaxed) + pixels);
+    }
+
+    /// The means as they are stored.
+    fn developed(mut self) -> Developed<C> {
+        let pixels = self.size.pixels();
+        self.sums.resize(pixels, Rgb::ZERO);
+        self.taken.resize(pixels, 0);
+        let Self { x, y, size, counts, sums, taken } = self;
+        let mean = |(sum, taken): (Rgb, &u32)| (sum / f64::from((*taken).max(1))).to_array();
+        let means = sums.into_iter().zip(&taken).map(mean);
+        let pixels = means.map(|mean| mean.map(narrow)).collect();
+        Developed { x, y, size, pixels, taken, counts }
     }
 }
 
@@ -318,9 +354,8 @@ pub fn render_pixels<C: AddAssign + Default + Send>(
     control: Control,
     estimator: impl Estimator<C>,
 ) -> Result<Rendering<C>, Cancelled> {
-    let mut film = Film::new(size, control.tile);
-    film.sample(sampling, control, &estimator)?;
-    Ok(film.finish())
+    Film::new(size, control.tile)
+        .fill_and_finish(control, |tile| tile.sample(sampling, control, |_, _| true, &estimator))
 }
 
 /// Renders pixels in detail only where the picture has some: first the centre of each, then all
@@ -340,19 +375,17 @@ pub fn render_adaptive<C: AddAssign + Default + Send>(
     control: Control,
     estimator: impl Estimator<C>,
 ) -> Result<Rendering<C>, Cancelled> {
-    let mut film = Film::new(size, control.tile);
-    film.sample(sampling.pilot(), control, &estimator)?;
-    let centers = film.finish();
+    let pilot = sampling.pilot();
+    let centers = Film::new(size, control.tile)
+        .fill_and_finish(control, |tile| tile.sample(pilot, control, |_, _| true, &estimator))?;
     let detailed = detailed(&centers.image, contrast);
     let is_detailed = |x: u32, y: u32| detailed[(y * size.width + x) as usize];
-    let mut film = Film::new(size, control.tile);
-    film.fill(control, |tile| {
+    let mut refined = Film::new(size, control.tile).fill_and_finish(control, |tile| {
         tile.sample(sampling, control, is_detailed, &estimator);
         for (x, y) in tile.places().filter(|&(x, y)| !is_detailed(x, y)) {
             tile.set(x, y, centers.image.get(x, y));
         }
     })?;
-    let mut refined = film.finish();
     refined.counts += centers.counts;
     Ok(refined)
 }

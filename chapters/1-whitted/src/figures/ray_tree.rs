@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use glam::DVec2;
 use lancer_accel::ObvhsBvh2;
 use lancer_core::Rgb;
+use lancer_core::geometry::Ray;
 use lancer_core::image::ImageSize;
 use lancer_core::intersector::{Hit, Intersector, Observer, Query, Traversal, Wanted};
 use lancer_core::scene::Scene;
@@ -111,7 +112,7 @@ struct Counting<'a> {
 }
 
 impl Traversal for Counting<'_> {
-    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
+    fn walk<O: Observer>(&self, query: Query<&Ray>, observer: &mut O) -> Option<Hit> {
         let count = match query.wanted {
             Wanted::Closest => &self.closest,
             Wanted::Any => &self.occluded,

@@ -255,11 +255,11 @@ const METHODS: [(&str, Method); 4] = [
     }),
     ("rays: all polygons", |view| {
         let index = LinearScan::new(&view.scene);
-        view.cast(|ray, counts| index.walk(&Query::closest(*ray, Interval::POSITIVE), counts))
+        view.cast(|ray, counts| index.walk(Query::closest(ray, Interval::POSITIVE), counts))
     }),
     ("rays: tree", |view| {
         let index = ObvhsBvh2::build(&view.scene);
-        view.cast(|ray, counts| index.walk(&Query::closest(*ray, Interval::POSITIVE), counts))
+        view.cast(|ray, counts| index.walk(Query::closest(ray, Interval::POSITIVE), counts))
     }),
 ];
 const PAINTERS: usize = 2;

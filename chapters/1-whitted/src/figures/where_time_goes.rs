@@ -22,7 +22,7 @@ const RUNS: usize = 25;
 
 /// Everything that a picture asks its index, in order.
 #[derive(Default)]
-struct Queries(Vec<Query>);
+struct Queries(Vec<Query<Ray>>);
 
 impl Recorder for Queries {
     fn enter(&mut self, call: &Call) {
@@ -46,7 +46,7 @@ struct Case<'s> {
     index_name: &'static str,
     index: Box<dyn Intersector + 's>,
     size: ImageSize,
-    queries: Vec<Query>,
+    queries: Vec<Query<Ray>>,
     counts: TestCounts,
 }
 
@@ -65,7 +65,7 @@ impl<'s> Case<'s> {
         picture(scene, &*index, size, &mut queries);
         let (queries, mut counts) = (queries.0, TestCounts::default());
         for query in &queries {
-            index.watch(query, &mut counts);
+            index.watch(query.asked(), &mut counts);
         }
         Self { scene_name, scene, index_name, index, size, queries, counts }
     }

@@ -178,8 +178,9 @@ fn speed(effort: Effort) -> (BarChart, String) {
         vec![Box::new(|| all().filter(|query| library.closest_hit(&query.ray).is_some()).count())];
     for built in &built {
         contenders.push(Box::new(|| {
-            let hit =
-                |query: &&Query| built.index.closest_hit(&query.ray, Interval::POSITIVE).is_some();
+            let hit = |query: &&Query<Ray>| {
+                built.index.closest_hit(&query.ray, Interval::POSITIVE).is_some()
+            };
             all().filter(hit).count()
         }));
     }

@@ -174,10 +174,10 @@ impl Observer for Boxes {
 
 /// How many different boxes a group of rays asks, divided by the group.
 fn boxes_per_ray(index: &Wide, rays: &Rays, group: usize) -> f64 {
-    let asked = |queries: &[Query]| {
+    let asked = |queries: &[Query<Ray>]| {
         let mut boxes = Boxes::default();
         for query in queries {
-            index.watch(query, &mut boxes);
+            index.watch(query.asked(), &mut boxes);
         }
         boxes.0.into_iter().collect::<HashSet<_>>().len()
     };

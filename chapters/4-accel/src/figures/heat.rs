@@ -24,7 +24,7 @@ fn watch(
         .map(|(x, y)| {
             let ray = rays.through(f64::from(x) + 0.5, f64::from(y) + 0.5);
             let mut counts = TestCounts::default();
-            (index.watch(&Query::closest(ray, Interval::POSITIVE), &mut counts), counts)
+            (index.watch(Query::closest(&ray, Interval::POSITIVE), &mut counts), counts)
         })
         .collect()
 }

@@ -74,7 +74,7 @@ impl Fan {
 }
 
 fn watch(index: &dyn Intersector, ray: &Ray, counts: &mut TestCounts) -> Option<Hit> {
-    index.watch(&Query::closest(*ray, Interval::POSITIVE), counts)
+    index.watch(Query::closest(ray, Interval::POSITIVE), counts)
 }
 
 /// Upright triangles that show as walls in the plan: a block of small ones in a corner, a few large ones.

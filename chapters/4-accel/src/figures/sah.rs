@@ -124,14 +124,14 @@ fn case_of(
         // Beyond all hits: none counts, so nothing stops the line.
         let nowhere = Interval { min: f64::MAX, max: f64::INFINITY };
         work.add(&tree, |tree, counts| {
-            tree.walk(&Query::closest(line, nowhere), counts);
+            tree.walk(Query::closest(&line, nowhere), counts);
         });
     }
     let mut of_rays = Work::default();
     for rays in Rays::of(&scene, size, &tree) {
         for query in &rays.queries {
             of_rays.add(&tree, |tree, counts| {
-                tree.walk(query, counts);
+                tree.walk(query.asked(), counts);
             });
         }
     }

@@ -140,7 +140,7 @@ impl Walker<'_> {
         let begins = step(&format!("begins, {} bytes beside the scene", built.bytes));
         self.steps.push(begins.opens().clears());
         let mut recorder = Recorder::new(scene, &ray, Interval::POSITIVE);
-        let hit = built.index.watch(&Query::closest(ray, Interval::POSITIVE), &mut recorder);
+        let hit = built.index.watch(Query::closest(&ray, Interval::POSITIVE), &mut recorder);
         let Recorder { events, counts, .. } = recorder;
         for Event { kind, best } in &events {
             let step = self.event(kind, *best, &step);

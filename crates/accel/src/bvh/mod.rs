@@ -6,7 +6,7 @@ pub(crate) use grow::MAX_DEPTH;
 pub use grow::split_at_median;
 
 use glam::Vec3A;
-use lancer_core::geometry::ConvexVolume;
+use lancer_core::geometry::{ConvexVolume, Ray};
 use lancer_core::intersector::{BeamIndex, BeamTraversal, Hit, Observer, Query, Traversal};
 use lancer_core::scene::{PrimitiveId, Subset};
 use rayon::prelude::*;
@@ -84,7 +84,7 @@ impl Traversal for Bvh<'_> {
     /// Visits the primitives whose boxes the ray meets, the leaves of a node before its other
     /// children and the nearest of those next, until any hit will do.
     #[inline]
-    fn walk<O: Observer>(&self, query: &Query, observer: &mut O) -> Option<Hit> {
+    fn walk<O: Observer>(&self, query: Query<&Ray>, observer: &mut O) -> Option<Hit> {
         self.0.walk(query, observer)
     }
 
@@ -151,7 +151,7 @@ impl Item {
 mod tests {
     use glam::{DAffine3, DVec3};
     use lancer_core::generate::icosphere;
-    use lancer_core::geometry::{Interval, Ray};
+    use lancer_core::geometry::Interval;
     use lancer_core::intersector::TestCounts;
     use lancer_core::scene::Scene;
 
@@ -249,7 +249,7 @@ mod tests {
                 let origin = 3.0 * DVec3::new(turn.cos(), turn.sin(), f64::from(k) / 1000.0);
                 let ray = Ray::new(origin, 0.3 * DVec3::new(turn.sin(), 0.0, turn.cos()) - origin);
                 assert!(
-                    index.walk(&Query::closest(ray, Interval::POSITIVE), &mut counts).is_some()
+                    index.walk(Query::closest(&ray, Interval::POSITIVE), &mut counts).is_some()
                 );
             }
             (index.statistics().sah_cost, counts.boxes + counts.primitives)

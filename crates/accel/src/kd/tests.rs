@@ -125,7 +125,7 @@ fn clipping_spares_tests() {
         tree.validate(&scene).unwrap();
         let mut counts = TestCounts::default();
         for ray in rays(1000) {
-            tree.walk(&Query::closest(ray, Interval::POSITIVE), &mut counts);
+            tree.walk(Query::closest(&ray, Interval::POSITIVE), &mut counts);
         }
         counts.primitives
     });

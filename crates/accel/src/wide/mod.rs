@@ -369,8 +369,8 @@ impl Intersector for Wide<'_> {
         self.any(ray, range, &mut ()).is_some()
     }
 
-    fn watch(&self, query: &Query, mut observer: &mut dyn Observer) -> Option<Hit> {
-        let &Query { ref ray, range, wanted } = query;
+    fn watch(&self, query: Query<&Ray>, mut observer: &mut dyn Observer) -> Option<Hit> {
+        let Query { ray, range, wanted } = query;
         match wanted {
             Wanted::Closest => self.closest(ray, range, &mut observer),
             Wanted::Any => {

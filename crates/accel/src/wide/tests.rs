@@ -165,7 +165,7 @@ fn a_ray_in_the_open_asks_little() {
         let wide = Wide::with_kernel((&scene).into(), kernel);
         let mut counts = TestCounts::default();
         let ray = Ray::new(DVec3::new(0.1, 0.2, 3.0), DVec3::NEG_Z);
-        assert!(wide.watch(&Query::closest(ray, Interval::POSITIVE), &mut counts).is_some());
+        assert!(wide.watch(Query::closest(&ray, Interval::POSITIVE), &mut counts).is_some());
         // Four levels of eight boxes, a leaf or two.
         assert!(counts.boxes <= 8 * 8 && counts.primitives <= 24, "{counts:?}");
     }
