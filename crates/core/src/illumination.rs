@@ -75,7 +75,7 @@ pub struct Reflectance {
 /// | R            | inside         | the mirror of L: L comes in as −L, so R leaves the surface |
 ///
 /// Both products are 0 below the horizon: a light behind the surface does not shine on it, and an
-/// even power of a negative R·V would light the wrong side. [`lit`] is the sum; its Iᵢ/dᵢ² come in as
+/// even power of a negative R·V would light the wrong side. [`lit`] is the sum, whose Iᵢ come in as
 /// [`Arriving`].
 ///
 /// Slide « Modèle Local ». (The slide's sum runs from 0 to nbLum, one light too many.)
@@ -98,14 +98,12 @@ pub fn local(reflectance: &Reflectance, n: DVec3, to_light: DVec3, to_eye: DVec3
 }
 
 /// Light that arrives at a surface unless something is in its way.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Arriving {
+#[derive(Clone, Copy, Debug)]
+pub struct Arriving<I> {
     /// From the surface to the light, which it reaches at t = 1.
     pub shadow_ray: Ray,
-    /// L, the unit direction of that ray.
-    pub to_light: DVec3,
-    /// Iᵢ/dᵢ²: of a point source, or of a sample of a lamp over its density.
-    pub radiance: Rgb,
+    /// Iᵢ for L, the unit direction of that ray: of a point source, or of a sample of a lamp over its density.
+    pub intensity: I,
 }
 
 /// The light that leaves a surface without the help of other surfaces.
@@ -124,21 +122,27 @@ pub struct Arriving {
 #[doc(alias = "algo:appel")]
 #[doc(alias = "ombres portées")]
 #[inline]
-pub fn lit(
+pub fn lit<I: Fn(DVec3) -> Rgb>(
     unlit: Rgb,
     reflectance: &Reflectance,
     n: DVec3,
     to_eye: DVec3,
-    arriving: impl IntoIterator<Item = Arriving>,
+    arriving: impl IntoIterator<Item = Arriving<I>>,
     mut visible: impl FnMut(&Ray) -> bool,
 ) -> Rgb {
     let mut radiance = unlit;
     if reflectance.diffuse == Rgb::ZERO && reflectance.specular == Rgb::ZERO {
         return radiance;
     }
-    for light in arriving {
-        let unshadowed = light.radiance * local(reflectance, n, light.to_light, to_eye);
-        if unshadowed != Rgb::ZERO && visible(&light.shadow_ray) {
+    for Arriving { shadow_ray, intensity } in arriving {
+        if n.dot(shadow_ray.direction) <= 0.0 {
+            continue;
+        }
+        let distance = shadow_ray.direction.length();
+        let to_light = shadow_ray.direction * distance.recip();
+        let g = attenuation(true, distance);
+        let unshadowed = intensity(to_light) * g * local(reflectance, n, to_light, to_eye);
+        if unshadowed != Rgb::ZERO && visible(&shadow_ray) {
             radiance += unshadowed;
         }
     }

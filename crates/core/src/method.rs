@@ -8,7 +8,7 @@ use std::ops::AddAssign;
 
 use crate::image::{Image, ImageSize};
 use crate::intersector::Intersector;
-use crate::render::{Cancelled, Control, Estimator, render_adaptive, render_pixels};
+use crate::render::{Cancelled, Control, Estimator, Film, render_adaptive, render_pixels};
 use crate::sampling::PixelSampling;
 use crate::scene::{Scene, Subset};
 
@@ -139,13 +139,20 @@ impl<'a> Order<'a> {
         estimator: impl Estimator<C>,
     ) -> Result<Outcome, Cancelled> {
         let Self { size, sampling, control, .. } = *self;
-        let rendering = match self.adaptive {
-            Some(contrast) => render_adaptive(size, sampling, contrast, control, estimator),
-            None => render_pixels(size, sampling, control, estimator),
-        }?;
-        let numbers = || rendering.samples.iter().map(|&count| [count as f32; 3]).collect();
-        let samples = |&name: &&'static str| (name, Image::from_pixels(size, numbers()));
-        let by_products = self.by_products.iter().map(samples).collect();
+        let (rendering, by_products) = if self.adaptive.is_none() && self.by_products.is_empty() {
+            (render_pixels(size, sampling, control, estimator)?, Vec::new())
+        } else {
+            let film = match self.adaptive {
+                Some(contrast) => render_adaptive(size, sampling, contrast, control, estimator)?,
+                None => {
+                    let mut film = Film::new(size, control.tile);
+                    film.sample(sampling, control, &estimator)?;
+                    film
+                }
+            };
+            let by_products = self.by_products.iter().map(|&name| (name, film.samples())).collect();
+            (film.finish(), by_products)
+        };
         Ok(Outcome { image: rendering.image, work: rendering.counts.into(), by_products })
     }
 }

@@ -46,8 +46,6 @@ impl Control<'_> {
 pub struct Rendering<C> {
     /// The picture.
     pub image: Image,
-    /// How many samples are in each pixel, row by row.
-    pub samples: Vec<u32>,
     /// Deterministic counts of the work, summed over all tiles.
     pub counts: C,
 }
@@ -122,6 +120,17 @@ impl<C: AddAssign + Default + Send> Film<C> {
         self.fill(control, |tile| tile.sample(sampling, control, |_, _| true, estimator))
     }
 
+    /// How many samples are in each pixel, as a grey picture.
+    pub fn samples(&self) -> Image {
+        let mut image = Image::new(self.size);
+        for tile in &self.tiles {
+            let mut pixels: Vec<[f32; 3]> = tile.taken.iter().map(|&n| [n as f32; 3]).collect();
+            pixels.resize(tile.size.pixels(), [0.0; 3]);
+            image.paste(tile.x, tile.y, tile.size, &pixels);
+        }
+        image
+    }
+
     /// The picture as it stands: a pixel is the mean of its samples, black without any.
     pub fn finish(self) -> Rendering<C> {
         Self::assembled(self.size, self.tiles.into_par_iter().map(Tile::developed).collect())
@@ -146,17 +155,12 @@ impl<C: AddAssign + Default + Send> Film<C> {
     }
 
     fn assembled(size: ImageSize, tiles: Vec<Developed<C>>) -> Rendering<C> {
-        let (mut image, mut samples) = (Image::new(size), vec![0; size.pixels()]);
-        let mut counts = C::default();
+        let (mut image, mut counts) = (Image::new(size), C::default());
         for tile in tiles {
             image.paste(tile.x, tile.y, tile.size, &tile.pixels);
-            for (row, taken) in tile.taken.chunks(tile.size.width as usize).enumerate() {
-                let start = (tile.y as usize + row) * size.width as usize + tile.x as usize;
-                samples[start..start + taken.len()].copy_from_slice(taken);
-            }
             counts += tile.counts;
         }
-        Rendering { image, samples, counts }
+        Rendering { image, counts }
     }
 }
 
@@ -166,7 +170,6 @@ struct Developed<C> {
     y: u32,
     size: ImageSize,
     pixels: Vec<[f32; 3]>,
-    taken: Vec<u32>,
     counts: C,
 }
 
@@ -175,8 +178,14 @@ impl<C> Tile<C> {
     /// sample, whatever was there.
     #[inline]
     pub fn set(&mut self, x: u32, y: u32, radiance: Rgb) {
-        let index = (y - self.y) as usize * self.size.width as usize + (x - self.x) as usize;
+        let index = self.index(x, y);
         (self.sums[index], self.taken[index]) = (radiance, 1);
+    }
+
+    /// Where the pixel in column `x` and row `y` of the picture stands among its own.
+    #[inline]
+    fn index(&self, x: u32, y: u32) -> usize {
+        (y - self.y) as usize * self.size.width as usize + (x - self.x) as usize
     }
 
     /// Columns and rows in the picture of its pixels, row by row.
@@ -195,43 +204,42 @@ impl<C> Tile<C> {
         wanted: impl Fn(u32, u32) -> bool,
         estimator: &impl Estimator<C>,
     ) {
-        let (mut samples, mut owners) = (Vec::with_capacity(BATCH), Vec::with_capacity(BATCH));
+        let mut samples = Vec::with_capacity(BATCH);
         let mut answers = vec![Rgb::ZERO; BATCH];
         for (column, row) in neighbours_together(self.size) {
             let (x, y) = (self.x + column, self.y + row);
             if !wanted(x, y) {
                 continue;
             }
-            let owner = (row * self.size.width + column) as usize;
-            for sample in sampling.some_of_pixel(x, y, self.taken[owner]..sampling.samples) {
+            let taken = self.taken[self.index(x, y)];
+            for sample in sampling.some_of_pixel(x, y, taken..sampling.samples) {
                 samples.push(sample);
-                owners.push(owner);
                 if samples.len() == BATCH {
                     if control.is_cancelled() {
                         return;
                     }
-                    self.answer(&mut samples, &mut owners, &mut answers, estimator);
+                    self.answer(&mut samples, &mut answers, estimator);
                 }
             }
         }
-        self.answer(&mut samples, &mut owners, &mut answers, estimator);
+        self.answer(&mut samples, &mut answers, estimator);
     }
 
     /// Adds what arrives at samples to the pixels that own them.
     fn answer(
         &mut self,
         samples: &mut Vec<Sample>,
-        owners: &mut Vec<usize>,
         answers: &mut [Rgb],
         estimator: &impl Estimator<C>,
     ) {
         let answers = &mut answers[..samples.len()];
         estimator.radiance(samples, answers, &mut self.counts);
-        for (owner, answer) in owners.drain(..).zip(answers) {
-            self.sums[owner] += *answer;
-            self.taken[owner] += 1;
+        for (sample, answer) in samples.drain(..).zip(answers) {
+            let [x, y] = sample.pixel;
+            let index = self.index(x, y);
+            self.sums[index] += *answer;
+            self.taken[index] += 1;
         }
-        samples.clear();
     }
 
     /// Lets `fill` go through the tile unless it is cancelled, and tells how many pixels are done by then.
@@ -256,7 +264,7 @@ impl<C> Tile<C> {
         let mean = |(sum, taken): (Rgb, &u32)| (sum / f64::from((*taken).max(1))).to_array();
         let means = sums.into_iter().zip(&taken).map(mean);
         let pixels = means.map(|mean| mean.map(narrow)).collect();
-        Developed { x, y, size, pixels, taken, counts }
+        Developed { x, y, size, pixels, counts }
     }
 }
 
@@ -364,7 +372,8 @@ pub fn render_pixels<C: AddAssign + Default + Send>(
 /// Illumination Model for Shaded Display*, 1980, § « Anti-aliasing », which compares a pixel's corners.
 ///
 /// What lies between the centres of equal pixels is missed, so this trades unbiased pixels for speed.
-/// [`Control::progress`] is told of each of the two passes over the picture.
+/// [`Control::progress`] is told of each of the two passes over the picture. The film holds the samples that are in the
+/// picture; the counts are those of both passes.
 ///
 /// # Errors
 /// As [`Film::fill`].
@@ -374,20 +383,23 @@ pub fn render_adaptive<C: AddAssign + Default + Send>(
     contrast: f64,
     control: Control,
     estimator: impl Estimator<C>,
-) -> Result<Rendering<C>, Cancelled> {
+) -> Result<Film<C>, Cancelled> {
     let pilot = sampling.pilot();
     let centers = Film::new(size, control.tile)
         .fill_and_finish(control, |tile| tile.sample(pilot, control, |_, _| true, &estimator))?;
     let detailed = detailed(&centers.image, contrast);
     let is_detailed = |x: u32, y: u32| detailed[(y * size.width + x) as usize];
-    let mut refined = Film::new(size, control.tile).fill_and_finish(control, |tile| {
+    let mut film = Film::new(size, control.tile);
+    film.fill(control, |tile| {
         tile.sample(sampling, control, is_detailed, &estimator);
         for (x, y) in tile.places().filter(|&(x, y)| !is_detailed(x, y)) {
             tile.set(x, y, centers.image.get(x, y));
         }
     })?;
-    refined.counts += centers.counts;
-    Ok(refined)
+    if let Some(first) = film.tiles.first_mut() {
+        first.counts += centers.counts;
+    }
+    Ok(film)
 }
 
 /// Which pixels differ from a direct neighbour by more than `contrast` on a display.
@@ -465,7 +477,7 @@ mod tests {
         let size = ImageSize::new(16, 8);
         let sampling = PixelSampling { pattern: Pattern::Owen, samples: 64, seed: 5 };
         let control = Control::default();
-        let adaptive = render_adaptive(size, sampling, 0.1, control, half_plane).unwrap();
+        let adaptive = render_adaptive(size, sampling, 0.1, control, half_plane).unwrap().finish();
         let full = render_pixels(size, sampling, control, half_plane).unwrap();
         let center = render_pixels(size, PixelSampling::CENTER, control, half_plane).unwrap();
         let mut refined = 0;
@@ -496,8 +508,8 @@ mod tests {
             Rgb::splat(0.5)
         };
         let size = ImageSize::new(5, 7);
-        let rendering = render_adaptive(size, sampling, 0.0, Control::default(), flat).unwrap();
-        assert_eq!(rendering.counts, 35);
+        let film = render_adaptive(size, sampling, 0.0, Control::default(), flat).unwrap();
+        assert_eq!(film.finish().counts, 35);
     }
 
     const SIZE: ImageSize = ImageSize::new(21, 9);
@@ -563,14 +575,15 @@ mod tests {
             tile.sample(sampling, Control::default(), |x, y| !is_set(x, y), &radiance);
         })
         .unwrap();
+        let samples = film.samples();
         let mixed = film.finish();
         for y in 0..9 {
             for x in 0..21 {
-                let (pixel, k) = (mixed.image.get(x, y), (y * 21 + x) as usize);
+                let (pixel, samples) = (mixed.image.get(x, y), samples.get(x, y).x);
                 if is_set(x, y) {
-                    assert_eq!((pixel, mixed.samples[k]), (Rgb::splat(0.25), 1));
+                    assert_eq!((pixel, samples), (Rgb::splat(0.25), 1.0));
                 } else {
-                    assert_eq!((pixel, mixed.samples[k]), (whole.image.get(x, y), 3));
+                    assert_eq!((pixel, samples), (whole.image.get(x, y), 3.0));
                 }
             }
         }

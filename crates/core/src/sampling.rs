@@ -96,10 +96,10 @@ impl PixelSampling {
         let corner = DVec2::new(f64::from(x), f64::from(y));
         let key = pixel_key(self.seed, x, y);
         let mut random = Uniform::with_key(key);
-        if self.pattern == Pattern::Jittered && numbers.start > 0 {
+        if numbers.start > 0 {
             random.skip(2 * u64::from(numbers.start));
         }
-        let cells = grid(self.samples);
+        let cells = if self.samples > 1 { grid(self.samples) } else { [1, 1] };
         numbers.map(move |index| {
             let cell = DVec2::new(f64::from(index % cells[0]), f64::from(index / cells[0]));
             let cells = DVec2::new(f64::from(cells[0]), f64::from(cells[1]));

@@ -38,7 +38,7 @@ impl<'a> Lighting<'a> {
         let World { scene, index } = self.world;
         let reflectance = scene.reflectance(surface);
         let unlit = ambient(reflectance.diffuse, scene.ambient) + scene.emitted(surface, to_eye);
-        let arriving = self.sources.iter().filter_map(|source| source.arriving(surface, n));
+        let arriving = self.sources.iter().map(|source| source.arriving(surface));
         let radiance = lit(unlit, &reflectance, n, to_eye, arriving, |shadow_ray| {
             let visible = !index.occluded(shadow_ray, Interval::up_to(1.0));
             recorder.shadow(shadow_ray, visible);

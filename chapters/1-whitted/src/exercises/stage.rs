@@ -92,7 +92,7 @@ fn starts_on(corners: [DVec3; 3], ray: &Ray, t: f64) -> bool {
 
 impl Traversal for Stage<'_> {
     fn walk<O: Observer>(&self, query: Query<&Ray>, _observer: &mut O) -> Option<Hit> {
-        let mut hits = self.hits(&query.ray, query.range);
+        let mut hits = self.hits(query.ray, query.range);
         match query.wanted {
             Wanted::Closest => {
                 self.count_traced();

@@ -97,7 +97,7 @@ impl InScene {
     fn new(effort: Effort, name: &'static str, scene: Scene, level: f64, alike: [f64; 3]) -> Self {
         let size = effort.pick(ImageSize::new(32, 32), ImageSize::new(120, 120));
         let render = |settings| whitted_picture(&scene, settings, size);
-        let Rendering { image: reference, counts, .. } = render(weight(NEGLIGIBLE));
+        let Rendering { image: reference, counts } = render(weight(NEGLIGIBLE));
         let rougher = render(weight(10.0 * NEGLIGIBLE)).image;
         let contenders = RULES.iter().flat_map(|rule| {
             rule.limits.iter().map(move |&limit| Contender {

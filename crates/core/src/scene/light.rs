@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::{FaceId, Material, Scene};
 use crate::Rgb;
 use crate::geometry::gamma;
-use crate::illumination::{Arriving, attenuation};
+use crate::illumination::Arriving;
 use crate::world::SurfacePoint;
 
 /// Rounded operations behind the end of a shadow ray, with room for its test against the face there.
@@ -44,18 +44,11 @@ impl PointSource {
         }
     }
 
-    /// What arrives from it at a surface with the unit shading normal `n` on the eye's side; `None` if it is
-    /// behind the surface.
+    /// What arrives from it at a surface.
     #[inline]
-    pub fn arriving(&self, surface: &SurfacePoint, n: DVec3) -> Option<Arriving> {
+    pub fn arriving(&self, surface: &SurfacePoint) -> Arriving<impl Fn(DVec3) -> Rgb + use<'_>> {
         let shadow_ray = surface.spawn_to(self.position);
-        if n.dot(shadow_ray.direction) <= 0.0 {
-            return None;
-        }
-        let distance = shadow_ray.direction.length();
-        let to_light = shadow_ray.direction * distance.recip();
-        let radiance = self.intensity_towards(to_light) * attenuation(true, distance);
-        Some(Arriving { shadow_ray, to_light, radiance })
+        Arriving { shadow_ray, intensity: |to_light| self.intensity_towards(to_light) }
     }
 }
 
