@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use lancer_core::Rgb;
 use lancer_core::geometry::{Ray, Sphere};
-use lancer_core::illumination::{Reflectance, ambient, attenuation, local};
+use lancer_core::illumination::{Arriving, Reflectance, ambient, attenuation, lit};
 use lancer_core::intersector::LinearScan;
 use lancer_core::scene::{Material, MaterialId, Mesh, PointLight, Scene, SphereObject};
 use lancer_core::world::World;
@@ -46,19 +46,29 @@ fn local_terms_by_hand() {
     let mirror = DVec3::new(-0.6, 0.8, 0.0);
     let reflectance =
         Reflectance { diffuse: Rgb::new(0.5, 0.25, 0.0), specular: grey(0.5), shininess: 10.0 };
+    // A lamp of intensity 8 at distance 2.
+    let arriving = |to_light: DVec3| Arriving {
+        shadow_ray: Ray::new(DVec3::ZERO, 2.0 * to_light),
+        intensity: |_: DVec3| grey(8.0),
+    };
+    let lit_by = |to_light, to_eye, visible| {
+        lit(grey(0.1), &reflectance, n, to_eye, [arriving(to_light)], |_| visible) - grey(0.1)
+    };
     // At full strength in the mirror direction: I g (ρ_d 0.8 + ρ_s).
-    let full = 2.0 * local(&reflectance, n, to_light, mirror);
+    let full = lit_by(to_light, mirror, true);
     assert!((full - Rgb::new(1.8, 1.4, 1.0)).abs().max_element() < 1e-15, "{full}");
+    assert_eq!(lit_by(to_light, mirror, false), Rgb::ZERO);
     // At 60 degrees off it: (1/2)^10.
     let eye =
         DVec3::new(-0.6 * 0.5 - 0.8 * 0.75_f64.sqrt(), 0.8 * 0.5 - 0.6 * 0.75_f64.sqrt(), 0.0);
-    let dim = 2.0 * local(&reflectance, n, to_light, eye);
+    let dim = lit_by(to_light, eye, true);
     assert!((dim.z - 2.0 * 0.5 / 1024.0).abs() < 1e-15, "{dim}");
     // Opposite the mirror direction an even power must not light anything: only ρ_d is left.
-    let behind = 2.0 * local(&reflectance, n, to_light, -mirror);
+    let behind = lit_by(to_light, -mirror, true);
     assert!((behind - Rgb::new(0.8, 0.4, 0.0)).abs().max_element() < 1e-15, "{behind}");
-    // A light below the horizon.
-    assert_eq!(2.0 * local(&reflectance, n, -to_light, mirror), Rgb::ZERO);
+    // A light below the horizon is not even asked for.
+    let never = |_: &Ray| -> bool { panic!("a shadow ray to a lamp that adds nothing") };
+    assert_eq!(lit(grey(0.1), &reflectance, n, mirror, [arriving(-to_light)], never), grey(0.1));
 }
 
 #[test]

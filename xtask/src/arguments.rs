@@ -34,7 +34,7 @@ pub fn indexes() -> String {
     list(&STRUCTURES.map(|structure| structure.name), "or")
 }
 
-/// Says which of the settings that are given, by their flags, `whom` takes no notice of.
+/// Warns of each setting that is given on the command line and that `whom` does not use.
 pub fn warn_of_unused(
     given: impl IntoIterator<Item = (Setting, bool)>,
     used: &[Setting],
@@ -46,7 +46,7 @@ pub fn warn_of_unused(
                 Setting::Sampling => "--spp",
                 Setting::Adaptive => "--adaptive",
                 Setting::MaxDepth => "--depth",
-                Setting::Index => "--index",
+                Setting::Index | Setting::Beams => "--index",
             };
             eprintln!("warning: {flag} changes nothing: {whom} does not use it");
         }

@@ -48,9 +48,9 @@ pub struct Args {
     /// Largest number of bounces between the eye and a surface (whitted); 5 unless given
     #[arg(long, value_parser = whole::<u32>(0, 1000), allow_negative_numbers = true)]
     depth: Option<u32>,
-    /// Picks the sample positions
-    #[arg(long, default_value_t = 0, value_parser = whole::<u64>(0, u64::MAX), allow_negative_numbers = true)]
-    seed: u64,
+    /// Picks the sample positions; 0 unless given
+    #[arg(long, value_parser = whole::<u64>(0, u64::MAX), allow_negative_numbers = true)]
+    seed: Option<u64>,
     /// Threads; 0 takes all processors. The picture does not depend on it
     #[arg(long, default_value_t = 0, value_parser = whole::<u16>(0, 1024), allow_negative_numbers = true)]
     threads: u16,
@@ -153,9 +153,14 @@ pub fn run(args: &Args) -> Result<()> {
             named(&what, name, method.by_products, |known| known.name).map(|known| known.name)
         })
         .collect::<Result<Vec<_>>>()?;
+    if method.uses.contains(&Setting::Beams) {
+        structure.check_beams().context("--index")?;
+    }
     check_target(&args.out).context("--out")?;
-    for (_, file) in &args.also {
+    for (k, (_, file)) in args.also.iter().enumerate() {
         check_target(file).context("--also")?;
+        let mut others = args.also[..k].iter().map(|(_, other)| other).chain([&args.out]);
+        ensure!(others.all(|other| other != file), "--also: {} is written twice", file.display());
     }
     progress::watch_for_interrupt()?;
 
@@ -246,11 +251,19 @@ fn place(scene: &mut Scene, headlight: bool, args: &Args) -> Result<()> {
 /// Says what the method takes no notice of: flags, and what is in the scene.
 fn warn(method: &Method, scene: &Scene, args: &Args) {
     let given = [
-        (Setting::Sampling, args.spp != 1),
+        (Setting::Sampling, args.spp != 1 || args.seed.is_some()),
         (Setting::Adaptive, args.adaptive.is_some()),
         (Setting::MaxDepth, args.depth.is_some()),
     ];
     warn_of_unused(given, method.uses, method.name);
+    if args.spp == 1 && method.uses.contains(&Setting::Sampling) {
+        let given = [("--seed", args.seed.is_some()), ("--adaptive", args.adaptive.is_some())];
+        for (flag, _) in given.into_iter().filter(|(_, is_given)| *is_given) {
+            eprintln!(
+                "warning: {flag} changes nothing: the one sample of --spp 1 is the pixel's centre"
+            );
+        }
+    }
     let ignored = method.ignores.iter().filter(|effect| effect.is_in(scene));
     let ignored: Vec<String> = ignored.map(Effect::to_string).collect();
     if !ignored.is_empty() {
@@ -265,25 +278,25 @@ fn trace(
     by_products: &[&'static str],
     args: &Args,
 ) -> Result<Outcome> {
+    let bar = progress::bar(args.size.pixels() as u64, "tracing");
     let building = Cell::new(0.0);
     let index: &BuildIndex = &|primitives| {
         let start = Instant::now();
         let built = structure.build(primitives);
         let seconds = start.elapsed().as_secs_f64();
         let mib = built.bytes as f64 / f64::from(1 << 20);
-        say!("index   {seconds:7.3} s   {}, {mib:.1} MiB", structure.name);
+        bar.suspend(|| say!("index   {seconds:7.3} s   {}, {mib:.1} MiB", structure.name));
         building.set(building.get() + seconds);
         built.index
     };
     let pattern = if args.spp == 1 { Pattern::Regular } else { Pattern::Owen };
-    let bar = progress::bar(args.size.pixels() as u64, "tracing");
     let control = Control {
         progress: &|pixels| bar.set_position(pixels),
         cancelled: &progress::INTERRUPTED,
         ..Control::default()
     };
     let order = Order {
-        sampling: PixelSampling { pattern, samples: args.spp, seed: args.seed },
+        sampling: PixelSampling { pattern, samples: args.spp, seed: args.seed.unwrap_or(0) },
         adaptive: args.adaptive,
         max_depth: args.depth,
         by_products,
@@ -295,8 +308,11 @@ fn trace(
     let seconds = start.elapsed().as_secs_f64() - building.get();
     bar.finish_and_clear();
     let outcome = outcome.map_err(|_| anyhow!("interrupted; no file was written"))?;
-    let rays = outcome.work.total(WorkKind::Rays);
-    say!("trace   {seconds:7.3} s   {}; {:.2} M/s", outcome.work, rays as f64 / seconds * 1e-6);
+    let rate = match outcome.work.total(WorkKind::Rays) {
+        0 => String::new(),
+        rays => format!("; {:.2} M/s", rays as f64 / seconds * 1e-6),
+    };
+    say!("trace   {seconds:7.3} s   {}{rate}", outcome.work);
     Ok(outcome)
 }
 

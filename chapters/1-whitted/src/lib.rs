@@ -1,5 +1,5 @@
-//! Chapter 1, « Introduction au lancer de rayons »: its scenes, its figures, and its algorithm step by step. The lesson is
-//! `README.md` beside this package's manifest.
+//! Chapter 1, « Introduction au lancer de rayons »: its scenes, figures and exercises, and its algorithm step by step.
+//! The lesson is `README.md` beside this package's manifest.
 
 pub mod exercises;
 pub mod figures;

@@ -1,5 +1,5 @@
-//! Chapter 4, « Accélération du lancer de rayons »: what is compared, on which scenes and rays, and the
-//! figures. The lesson is `README.md` beside this package's manifest.
+//! Chapter 4, « Accélération du lancer de rayons »: what is compared, on which scenes and rays, the figures, the
+//! exercises, and a ray's walk through the indexes. The lesson is `README.md` beside this package's manifest.
 
 pub mod aimed;
 pub mod exercises;

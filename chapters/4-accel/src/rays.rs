@@ -87,7 +87,7 @@ impl Rays {
     /// The answers of an index, and its work.
     pub fn watch(&self, index: &dyn Intersector) -> (Vec<Option<Hit>>, TestCounts) {
         let mut counts = TestCounts::default();
-        let answer = |query: &Query<Ray>| index.watch(query.asked(), &mut counts);
+        let answer = |query: &Query<Ray>| index.watch(query.as_ref(), &mut counts);
         (self.queries.iter().map(answer).collect(), counts)
     }
 

@@ -106,13 +106,13 @@ impl BinaryTree<'_> {
     /// Checks that every box contains what is below it, and that every node and every one of these
     /// primitives is below the root once.
     pub fn validate<'p>(&self, primitives: impl Into<Subset<'p>>) -> Result<(), String> {
-        let mut seen = Seen::new(primitives.into(), self.nodes.len());
+        let mut coverage = Coverage::new(primitives.into(), self.nodes.len());
         let mut pending: Vec<usize> = if self.nodes.is_empty() { Vec::new() } else { vec![0] };
         while let Some(index) = pending.pop() {
-            seen.node()?;
+            coverage.node()?;
             let node = &self.nodes[index];
             if node.is_leaf() {
-                seen.leaf(&self.frame, node.bounds, &self.primitives[node.leaf()])?;
+                coverage.leaf(&self.frame, node.bounds, &self.primitives[node.leaf()])?;
                 continue;
             }
             for child in node.children() {
@@ -122,7 +122,7 @@ impl BinaryTree<'_> {
                 pending.push(child);
             }
         }
-        seen.all()
+        coverage.all()
     }
 }
 
@@ -191,7 +191,7 @@ impl Traversal for BinaryTree<'_> {
 }
 
 /// What a validation has found below the root.
-pub(crate) struct Seen<'s> {
+pub(crate) struct Coverage<'s> {
     all: Subset<'s>,
     /// Whether each of them was found in a leaf, in their order.
     seen: Vec<bool>,
@@ -199,7 +199,7 @@ pub(crate) struct Seen<'s> {
     reached: usize,
 }
 
-impl<'s> Seen<'s> {
+impl<'s> Coverage<'s> {
     pub(crate) fn new(all: Subset<'s>, nodes: usize) -> Self {
         Self { seen: vec![false; all.len()], all, nodes, reached: 0 }
     }
@@ -219,7 +219,7 @@ impl<'s> Seen<'s> {
     ) -> Result<(), String> {
         for &primitive in primitives {
             let place = self.all.place(primitive);
-            let place = place.ok_or_else(|| format!("{primitive:?} is none of them"))?;
+            let place = place.ok_or_else(|| format!("{primitive:?} is not among the primitives"))?;
             if std::mem::replace(&mut self.seen[place], true) {
                 return Err(format!("{primitive:?} is in two leaves"));
             }

@@ -21,10 +21,9 @@ pub(crate) type CellEntry<'i> = (f64, &'i [PrimitiveId]);
 /// The cells that a ray visits, near ones first.
 pub(crate) trait RayCells<'i> {
     /// The next cell that the ray enters before `max`.
-    fn next<O: Observer>(&mut self, max: f64, observer: &mut O)
-    -> Option<(f64, &'i [PrimitiveId])>;
+    fn next<O: Observer>(&mut self, max: f64, observer: &mut O) -> Option<CellEntry<'i>>;
 
-    /// Where the cell is that came last. A search does not ask.
+    /// Where the cell is that came last, for who looks inside: a search does not ask.
     fn bounds(&self) -> Bounds3;
 }
 

@@ -5,7 +5,7 @@ use lancer_core::intersector::{Hit, Observer, Probe, Query, Wanted};
 use lancer_core::scene::{PrimitiveId, Scene, Subset};
 use smallvec::SmallVec;
 
-use crate::binary_tree::{BinaryTree, Seen, TreeNode, TreeStatistics};
+use crate::binary_tree::{BinaryTree, Coverage, TreeNode, TreeStatistics};
 use crate::four_boxes::{FourBoxes, FourSlabs, Frame};
 use crate::front::Front;
 use crate::pending::{Entered, Lanes, Pending};
@@ -145,15 +145,15 @@ impl<'s> FourWide<'s> {
     }
 
     pub(crate) fn validate(&self, primitives: Subset) -> Result<(), String> {
-        let mut seen = Seen::new(primitives, self.nodes.len());
+        let mut coverage = Coverage::new(primitives, self.nodes.len());
         let mut pending = if self.nodes.is_empty() { Vec::new() } else { vec![0] };
         while let Some(index) = pending.pop() {
-            seen.node()?;
+            coverage.node()?;
             let node = &self.nodes[index];
             for lane in 0..4 {
                 let bounds = node.boxes.get(lane);
                 if node.leaves & 1 << lane != 0 {
-                    seen.leaf(&self.frame, bounds, &self.primitives[node.leaf(lane)])?;
+                    coverage.leaf(&self.frame, bounds, &self.primitives[node.leaf(lane)])?;
                     continue;
                 }
                 let child = node.first[lane] as usize;
@@ -166,7 +166,7 @@ impl<'s> FourWide<'s> {
                 pending.push(child);
             }
         }
-        seen.all()
+        coverage.all()
     }
 }
 

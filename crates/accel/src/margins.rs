@@ -35,8 +35,7 @@ fn slack_with(bounds: Bounds3, share: f64) -> f64 {
     if bounds.is_empty() {
         return 0.0;
     }
-    let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
-    ROUNDING * largest + share * (bounds.max - bounds.min).max_element()
+    ROUNDING * bounds.reach() + share * (bounds.max - bounds.min).max_element()
 }
 
 /// How far beside a primitive within `bounds` a ray may run whose primitive test still finds a hit: the

@@ -6,7 +6,7 @@ use obvhs::BvhBuildParams;
 use obvhs::cwbvh::builder::build_cwbvh;
 use obvhs::cwbvh::node::CwBvhNode;
 
-use crate::binary_tree::Seen;
+use crate::binary_tree::Coverage;
 use crate::four_boxes::{FourBoxes, FourSlabs, Frame, FrameBox};
 use crate::obvhs_bvh2::{ids, library_boxes};
 use crate::pending::{Entered, Lanes, Pending};
@@ -58,24 +58,24 @@ impl<'s> ObvhsCwbvh<'s> {
     /// Checks that every one of these primitives is in one leaf and in all boxes above it, as they are
     /// unpacked.
     pub fn validate<'p>(&self, primitives: impl Into<Subset<'p>>) -> Result<(), String> {
-        let mut seen = Seen::new(primitives.into(), self.nodes.len());
+        let mut coverage = Coverage::new(primitives.into(), self.nodes.len());
         let root = (0, FrameBox::EVERYTHING);
         let mut pending = if self.nodes.is_empty() { Vec::new() } else { vec![root] };
         while let Some((index, around)) = pending.pop() {
-            seen.node()?;
+            coverage.node()?;
             let node = self.nodes.get(index).ok_or_else(|| format!("there is no node {index}"))?;
             for (half, boxes) in [0, 4].into_iter().zip(unpack(node)) {
                 for lane in 0..4 {
                     let bounds = around.intersection(boxes.get(lane));
                     if node.is_leaf(half + lane) {
-                        seen.leaf(&self.frame, bounds, self.leaf(node, half + lane))?;
+                        coverage.leaf(&self.frame, bounds, self.leaf(node, half + lane))?;
                     } else {
                         pending.push((node.child_node_index(half + lane) as usize, bounds));
                     }
                 }
             }
         }
-        seen.all()
+        coverage.all()
     }
 
     /// The primitives of a leaf; none in an empty slot.

@@ -1,6 +1,9 @@
 //! Every index of the course by name, the one list that figures, benches and the command line share.
 
-use lancer_core::intersector::{BeamIndex, Intersector, LinearScan};
+use std::error::Error;
+use std::fmt;
+
+use lancer_core::intersector::{Intersector, LinearScan};
 use lancer_core::scene::Subset;
 
 use crate::{BspTree, Bvh, Grid, KdTree, ObvhsBvh2, ObvhsCwbvh, Octree, Wide};
@@ -112,21 +115,27 @@ impl Structure {
     }
 }
 
-/// The names of the structures that beams can ask.
-pub fn names_with_beams() -> Vec<&'static str> {
-    STRUCTURES.into_iter().filter(|structure| structure.beams).map(|s| s.name).collect()
+/// Beams cannot ask an index of this kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NoBeams(&'static str);
+
+impl fmt::Display for NoBeams {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let with_beams = STRUCTURES.iter().filter(|structure| structure.beams);
+        let names: Vec<&str> = with_beams.map(|structure| structure.name).collect();
+        write!(f, "beams cannot ask `{}`; they can ask one of these: {}", self.0, names.join(", "))
+    }
 }
 
-impl Built<'_> {
-    /// The index as beams ask it.
+impl Error for NoBeams {}
+
+impl Structure {
+    /// Whether beams can ask what it builds: before it is built.
     ///
     /// # Errors
-    /// If they cannot: which indexes they can ask.
-    pub fn beams(&self) -> Result<&dyn BeamIndex, String> {
-        self.index.beams().ok_or_else(|| {
-            let names = names_with_beams().join(", ");
-            format!("beams cannot ask this index; they can ask one of these: {names}")
-        })
+    /// If they cannot; the message lists the structures that they can ask.
+    pub fn check_beams(&self) -> Result<(), NoBeams> {
+        if self.beams { Ok(()) } else { Err(NoBeams(self.name)) }
     }
 }
 
@@ -215,10 +224,13 @@ mod tests {
         let scene = Scene::of_mesh(icosphere(1));
         for structure in STRUCTURES {
             let built = structure.build(&scene);
-            assert_eq!(built.beams().is_ok(), structure.beams, "{}", structure.name);
+            let has_beams = built.index.beams().is_some();
+            assert_eq!(has_beams, structure.check_beams().is_ok(), "{}", structure.name);
         }
-        assert_eq!(names_with_beams(), ["linear", "wide", "bvh", "grid"]);
-        let refused = structure("octree").build(&scene).beams().err().unwrap();
-        assert!(refused.ends_with(": linear, wide, bvh, grid"), "{refused}");
+        let refused = structure("octree").check_beams().unwrap_err().to_string();
+        assert_eq!(
+            refused,
+            "beams cannot ask `octree`; they can ask one of these: linear, wide, bvh, grid"
+        );
     }
 }

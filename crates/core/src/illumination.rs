@@ -106,6 +106,22 @@ pub struct Arriving<I> {
     pub intensity: I,
 }
 
+impl<I: Fn(DVec3) -> Rgb> Arriving<I> {
+    /// What the surface sends to the eye of it with vis = 1: one term of `eq:local`, 0 for a light behind the
+    /// surface.
+    #[inline]
+    pub fn unshadowed(&self, reflectance: &Reflectance, n: DVec3, to_eye: DVec3) -> Rgb {
+        let direction = self.shadow_ray.direction;
+        if n.dot(direction) <= 0.0 {
+            return Rgb::ZERO;
+        }
+        let distance = direction.length();
+        let to_light = direction * distance.recip();
+        let g = attenuation(true, distance);
+        (self.intensity)(to_light) * g * local(reflectance, n, to_light, to_eye)
+    }
+}
+
 /// The light that leaves a surface without the help of other surfaces.
 ///
 /// ```text
@@ -134,15 +150,9 @@ pub fn lit<I: Fn(DVec3) -> Rgb>(
     if reflectance.diffuse == Rgb::ZERO && reflectance.specular == Rgb::ZERO {
         return radiance;
     }
-    for Arriving { shadow_ray, intensity } in arriving {
-        if n.dot(shadow_ray.direction) <= 0.0 {
-            continue;
-        }
-        let distance = shadow_ray.direction.length();
-        let to_light = shadow_ray.direction * distance.recip();
-        let g = attenuation(true, distance);
-        let unshadowed = intensity(to_light) * g * local(reflectance, n, to_light, to_eye);
-        if unshadowed != Rgb::ZERO && visible(&shadow_ray) {
+    for light in arriving {
+        let unshadowed = light.unshadowed(reflectance, n, to_eye);
+        if unshadowed != Rgb::ZERO && visible(&light.shadow_ray) {
             radiance += unshadowed;
         }
     }

@@ -1,4 +1,4 @@
-//! The open traits of the course: what answers "what does this ray meet?", and this beam.
+//! The open traits of the course: what answers what a ray, or a beam, meets.
 //!
 //! Chapter 4 swaps the answerers; all of them must agree with [`LinearScan`] bit for bit.
 
@@ -60,9 +60,9 @@ impl<R> Query<R> {
 }
 
 impl Query<Ray> {
-    /// The same question, to be asked.
+    /// The same query by a reference to its ray.
     #[inline]
-    pub const fn asked(&self) -> Query<&Ray> {
+    pub const fn as_ref(&self) -> Query<&Ray> {
         Query { ray: &self.ray, range: self.range, wanted: self.wanted }
     }
 }

@@ -6,6 +6,7 @@
 use std::fmt;
 use std::ops::AddAssign;
 
+use crate::Rgb;
 use crate::image::{Image, ImageSize};
 use crate::intersector::Intersector;
 use crate::render::{Cancelled, Control, Estimator, Film, render_adaptive, render_pixels};
@@ -42,6 +43,8 @@ pub enum Setting {
     MaxDepth,
     /// [`Order::index`], where the choice changes more than the time.
     Index,
+    /// [`Order::index`] as beams ask it, which not every kind of index can answer.
+    Beams,
 }
 
 /// What makes a scene harder to draw than matte surfaces lit by points.
@@ -58,11 +61,12 @@ pub enum Effect {
 impl Effect {
     /// Whether a scene has it.
     pub fn is_in(self, scene: &Scene) -> bool {
-        let any = |has: fn(&crate::scene::Material) -> bool| scene.materials.iter().any(has);
+        let of_faces = scene.mesh.faces.iter().map(|face| face.material);
+        let mut used = of_faces.chain(scene.spheres.iter().map(|sphere| sphere.material));
         match self {
-            Self::Mirrors => any(|material| material.k_s != crate::Rgb::ZERO),
-            Self::Glass => any(|material| material.k_t != crate::Rgb::ZERO),
-            Self::AreaLights => scene.has_area_light(),
+            Self::Mirrors => used.any(|id| scene.material(id).k_s != Rgb::ZERO),
+            Self::Glass => used.any(|id| scene.material(id).k_t != Rgb::ZERO),
+            Self::AreaLights => !scene.area_lights().is_empty(),
         }
     }
 }
@@ -134,6 +138,9 @@ impl<'a> Order<'a> {
     ///
     /// # Errors
     /// If it is cancelled.
+    ///
+    /// # Panics
+    /// If the order asks for another by-product: a method's list names those that it has.
     pub fn sample<C: AddAssign + Default + Send + Into<Work>>(
         &self,
         estimator: impl Estimator<C>,
@@ -150,7 +157,11 @@ impl<'a> Order<'a> {
                     film
                 }
             };
-            let by_products = self.by_products.iter().map(|&name| (name, film.samples())).collect();
+            let by_product = |&name: &&'static str| {
+                assert_eq!(name, SAMPLES.name, "a by-product that the method has");
+                (name, film.samples())
+            };
+            let by_products = self.by_products.iter().map(by_product).collect();
             (film.finish(), by_products)
         };
         Ok(Outcome { image: rendering.image, work: rendering.counts.into(), by_products })
@@ -225,6 +236,9 @@ impl fmt::Display for Work {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::generate::icosphere;
+    use crate::intersector::LinearScan;
+    use crate::sampling::{Pattern, Sample};
 
     #[test]
     fn only_counts_of_one_kind_are_added() {
@@ -236,6 +250,46 @@ mod tests {
         let work = Work { counts };
         assert_eq!(WORK_KINDS.map(|kind| work.total(kind)), [12, 0, 3]);
         assert_eq!(work.to_string(), "12 rays: 8 primary, 4 shadow; 3 set operations: 3 inserted");
+    }
+
+    /// With a film and without, of one sample and of several: the same picture.
+    #[test]
+    fn a_by_product_does_not_change_the_picture() {
+        #[derive(Default)]
+        struct Count(u64);
+        impl AddAssign for Count {
+            fn add_assign(&mut self, other: Self) {
+                self.0 += other.0;
+            }
+        }
+        impl From<Count> for Work {
+            fn from(count: Count) -> Self {
+                Self { counts: vec![(WorkKind::Tests, "samples", count.0)] }
+            }
+        }
+        let estimator = |sample: &Sample, count: &mut Count| {
+            count.0 += 1;
+            Rgb::splat((sample.film.x * 0.7).sin() * sample.film.y)
+        };
+        let scene = Scene::of_mesh(icosphere(0));
+        let order = Order::new(
+            &scene,
+            &|primitives| Box::new(LinearScan::new(primitives)),
+            ImageSize::new(19, 7),
+        );
+        let several = PixelSampling { pattern: Pattern::Owen, samples: 5, seed: 2 };
+        for sampling in [PixelSampling::CENTER, several] {
+            for adaptive in [None, Some(0.2)] {
+                let order = Order { sampling, adaptive, ..order };
+                let alone = order.sample(estimator).unwrap();
+                let beside =
+                    Order { by_products: &["samples"], ..order }.sample(estimator).unwrap();
+                assert!(alone.image == beside.image && alone.work == beside.work);
+                let [(name, samples)] = &beside.by_products[..] else { panic!("one by-product") };
+                let most = samples.pixels().iter().map(|pixel| pixel[0]).fold(0.0, f32::max);
+                assert_eq!((*name, most), ("samples", sampling.samples as f32));
+            }
+        }
     }
 
     const WORK_KINDS: [WorkKind; 3] = [WorkKind::Rays, WorkKind::Tests, WorkKind::SetOperations];

@@ -88,6 +88,8 @@ pub struct Branches {
     /// The share k_t of the refracted ray and its unit direction; `None` if the share is 0, and at total
     /// reflection.
     pub refracted: Option<(Rgb, DVec3)>,
+    /// Whether the surface lets light pass, but none in this direction.
+    pub total_reflection: bool,
 }
 
 impl Branches {
@@ -107,7 +109,7 @@ impl Branches {
             }
         }
         let mirror = (k_s != Rgb::ZERO).then(|| (k_s, reflect(incident, n)));
-        Self { mirror, refracted }
+        Self { mirror, refracted, total_reflection: k_t != Rgb::ZERO && refracted.is_none() }
     }
 
     /// k_s and k_t of `eq:recursion`, once it is known whether the reflection is total.

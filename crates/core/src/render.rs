@@ -57,8 +57,9 @@ pub struct Cancelled;
 
 /// A picture in the making: for each pixel the sum of its samples in `f64`, in their order, and their number.
 ///
-/// A picture that is continued, by more samples or after it was cancelled, has the bits of one that never
-/// was interrupted.
+/// A picture that is continued with the sampling that it began with has the bits of one that never was
+/// interrupted, be it after it was cancelled or, by [`Pattern::Owen`](crate::sampling::Pattern), with more samples: the
+/// grids of the other patterns follow from the number of samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film<C> {
     size: ImageSize,
@@ -140,7 +141,7 @@ impl<C: AddAssign + Default + Send> Film<C> {
     ///
     /// # Errors
     /// As [`Film::fill`].
-    pub fn fill_and_finish(
+    fn fill_and_finish(
         self,
         control: Control,
         fill: impl Fn(&mut Tile<C>) + Sync,
@@ -373,7 +374,8 @@ pub fn render_pixels<C: AddAssign + Default + Send>(
 ///
 /// What lies between the centres of equal pixels is missed, so this trades unbiased pixels for speed.
 /// [`Control::progress`] is told of each of the two passes over the picture. The film holds the samples that are in the
-/// picture; the counts are those of both passes.
+/// picture, of which a pixel without detail has that of the first pass: it is finished, not to be continued. The counts
+/// are those of both passes.
 ///
 /// # Errors
 /// As [`Film::fill`].

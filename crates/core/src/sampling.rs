@@ -4,9 +4,9 @@
 //! A sample's numbers come in sets of four ([`Sample::numbers`]), each set a scrambled Sobol sequence of its own:
 //! what belongs together must share one, since only within a set are many samples stratified together.
 //!
-//! | set | numbers 0 and 1                   | numbers 2 and 3            |
-//! |-----|-----------------------------------|----------------------------|
-//! | 0   | the point of the film, in its pixel | the point on the first lamp |
+//! | set | numbers 0 and 1                                       | numbers 2 and 3                          |
+//! |-----|-------------------------------------------------------|------------------------------------------|
+//! | 0   | the film point in its pixel, by [`Pattern::Owen`]     | reserved for the point on the first lamp |
 //!
 //! A method that needs more takes the next free sets and adds its rows here.
 
@@ -224,7 +224,7 @@ mod tests {
         }
     }
 
-    /// All but the film point is the same for every pattern, and all of it for every count.
+    /// By Owen scrambling all of it is the same for every count, and for every pattern all but the film point.
     #[test]
     fn a_sample_does_not_depend_on_how_many_there_are() {
         let of = |pattern, samples, numbers: Range<u32>| -> Vec<Sample> {
@@ -278,11 +278,18 @@ mod tests {
             &|x| sample(sampling, x + 1).numbers(0)[2],
             &|x| sample(sampling.pilot(), x).numbers(0)[2],
         ];
+        // Along one pixel too: sets that were scrambled alike would be the same sequence.
+        let one: Vec<Sample> = sampling.some_of_pixel(4, 3, 0..20_000).collect();
         for (k, other) in others.into_iter().enumerate() {
             let found = correlation(&first, other);
             assert!(found.abs() < 3.7 / f64::from(count).sqrt(), "{k}: {found}");
         }
         assert!(correlation(&first, &first) > 0.97);
+        for set in [1, 2, 9] {
+            let of = |k: u32, set| one[k as usize].numbers(set)[2];
+            let found = correlation(&|k| of(k, 0), &|k| of(k, set));
+            assert!(found.abs() < 3.7 / f64::from(count).sqrt(), "{set}: {found}");
+        }
     }
 
     #[test]

@@ -12,7 +12,7 @@ use lancer_core::method::{Effect, Method, Order, Setting, Work, WorkKind};
 use lancer_core::render::PrimaryHits;
 use lancer_core::world::World;
 use lancer_exercise::{Card, Check, Course, Exercise, Shown, Solution, Verdict, slips, within};
-use lancer_figure::{Effort, Figure, Finished, Montage, Plate, Table, Tile, method_color};
+use lancer_figure::{Effort, Figure, Finished, Montage, Plate, Table, Tile, category_color};
 use lancer_lesson::picture::{painted, shown};
 use lancer_lesson::scenes::{NamedScene, parsed};
 use lancer_lesson::{Chapter, judge};
@@ -95,7 +95,7 @@ fn make(effort: Effort) -> Finished {
     let plate = Plate::new("9.1", "Facing the eye", claim, rays == size.pixels() as u64)
         .panel(
             Montage::new()
-                .tile(Tile::new("facing", shown(&outcome.image)).color(method_color("appel"))),
+                .tile(Tile::new("facing", shown(&outcome.image)).color(category_color(0))),
         )
         .note("Settings", format!("{size}, 1 sample per pixel"));
     let mut data = Table::new(["rays", "mean"]);
@@ -136,6 +136,10 @@ const EXERCISE: Exercise<Subject> = Exercise {
         facing(n, to_eye):
         "the sign is kept: a surface seen from behind is dark":
             "at a slant from behind" catches n.dot(to_eye);
+        "the sine is taken: it is 0 where the surface faces the eye":
+            "at a slant from behind" catches n.cross(to_eye).length();
+        "the cosine is squared":
+            "at a slant from behind" catches n.dot(to_eye).powi(2);
     },
     draw,
     explain: None,
@@ -159,11 +163,7 @@ fn main() {
         println!("{} {}: {}", figure.id, figure.name, finished.plate.claim());
     }
     for verified in CHAPTER.course.verify() {
-        println!(
-            "{} {}: {}",
-            verified.id,
-            verified.name,
-            if verified.holds() { "proved" } else { "FAILS" }
-        );
+        assert!(verified.holds(), "{verified:?}");
+        println!("{} {}: proved", verified.id, verified.name);
     }
 }

@@ -10,7 +10,7 @@
 //! | [`view`]                 | a scene's outlines, rays and directions in a plane drawing                |
 //! | [`naive`], [`hard_boxes`] | what textbooks get wrong, and the boxes that show it                      |
 //!
-//! This crate knows no renderer and no index.
+//! This crate knows no crate of renderers or indexes.
 
 pub mod chapter;
 pub mod hard_boxes;

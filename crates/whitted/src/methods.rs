@@ -1,4 +1,4 @@
-use lancer_core::method::{Effect, Method, Order, SAMPLES, Setting, Work, WorkKind};
+use lancer_core::method::{Effect, Method, SAMPLES, Setting, Work, WorkKind};
 use lancer_core::render::PrimaryHits;
 use lancer_core::world::World;
 
@@ -32,7 +32,7 @@ pub static METHODS: [Method; 2] = [
         render: |order| {
             let index = (order.index)(order.scene.into());
             let world = World { scene: order.scene, index: &*index };
-            let whitted = Whitted::new(world, Settings::of(order));
+            let whitted = Whitted::new(world, Settings::to_depth(order.max_depth));
             order.sample(PrimaryHits::new(
                 world,
                 order.size,
@@ -41,14 +41,6 @@ pub static METHODS: [Method; 2] = [
         },
     },
 ];
-
-impl Settings {
-    /// The default but for what the order says.
-    fn of(order: &Order<'_>) -> Self {
-        let settings = Self::default();
-        Self { max_depth: order.max_depth.unwrap_or(settings.max_depth), ..settings }
-    }
-}
 
 impl From<RayCounts> for Work {
     fn from(rays: RayCounts) -> Self {

@@ -28,6 +28,14 @@ impl Default for Settings {
     }
 }
 
+impl Settings {
+    /// The default, to another depth if there is one.
+    pub fn to_depth(max_depth: Option<u32>) -> Self {
+        let settings = Self::default();
+        Self { max_depth: max_depth.unwrap_or(settings.max_depth), ..settings }
+    }
+}
+
 /// « choix discutable mais que mettre ? »: the radiance of a ray at the limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AtLimit {

@@ -11,11 +11,11 @@ use lancer_core::scene::Camera;
 use lancer_exercise::{
     Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, ensure, same, slips, within,
 };
+use lancer_lesson::naive::{BySigns, moeller_trumbore};
 
 use super::reference::ray_triangle;
 use super::{Meeting, Subject, painted};
 use crate::figures::watertight::{EDGES, Relief, VERTICES, aimed};
-use lancer_lesson::naive::{BySigns, moeller_trumbore};
 
 pub const EXERCISE: Exercise<Subject> = Exercise {
     card: Card {

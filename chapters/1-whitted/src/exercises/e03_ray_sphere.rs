@@ -8,11 +8,11 @@ use lancer_core::sampling::Uniform;
 use lancer_exercise::{
     Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, ensure, slips, within,
 };
+use lancer_lesson::naive::textbook_sphere;
 
 use super::reference::ray_sphere;
 use super::{Subject, painted};
 use crate::figures::quadratic::far_sphere;
-use lancer_lesson::naive::textbook_sphere;
 
 pub const EXERCISE: Exercise<Subject> = Exercise {
     card: Card {

@@ -6,11 +6,11 @@ use lancer_core::image::{Image, ImageSize};
 use lancer_core::scene::MaterialId;
 use lancer_core::world::SurfacePoint;
 use lancer_exercise::{Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, slips, within};
+use lancer_lesson::naive::epsilon_shadow_ray;
 
 use super::Subject;
 use super::reference::shadow_ray;
 use crate::figures::acne::Site;
-use lancer_lesson::naive::epsilon_shadow_ray;
 
 pub const EXERCISE: Exercise<Subject> = Exercise {
     card: Card {

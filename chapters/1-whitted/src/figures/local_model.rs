@@ -1,14 +1,13 @@
 //! 1.2: the picture built up term by term, and the terms' sum against the picture.
 
-use glam::DVec3;
 use lancer_accel::ObvhsBvh2;
 use lancer_core::Rgb;
-use lancer_core::geometry::{Interval, Ray};
-use lancer_core::illumination::{Reflectance, ambient, attenuation, local};
+use lancer_core::geometry::Interval;
+use lancer_core::illumination::{Reflectance, ambient};
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::intersector::Intersector;
 use lancer_core::optics::Branches;
-use lancer_core::scene::{PointSource, Scene};
+use lancer_core::scene::Scene;
 use lancer_core::world::World;
 use lancer_figure::{
     BarChart, Effort, Finished, Montage, Plate, Row, Table, Tile, category_color, number,
@@ -115,12 +114,12 @@ fn terms_of(scene: &Scene, size: ImageSize) -> (Vec<[Rgb; 6]>, Vec<Rgb>) {
             let shiny = Reflectance { diffuse: Rgb::ZERO, ..both };
             terms[0] = material.emission + ambient(both.diffuse, scene.ambient);
             for source in &sources {
-                let shadow_ray = surface.spawn_to(source.position);
-                let lit = |reflectance| light(source, reflectance, &shadow_ray, n, -incident);
+                let light = source.arriving(&surface);
+                let lit = |reflectance| light.unshadowed(reflectance, n, -incident);
                 let (diffuse, specular) = (lit(&matte), lit(&shiny));
                 terms[1] += diffuse;
                 terms[2] += specular;
-                if index.occluded(&shadow_ray, Interval::up_to(1.0)) {
+                if index.occluded(&light.shadow_ray, Interval::up_to(1.0)) {
                     terms[3] -= diffuse + specular;
                 }
             }
@@ -132,18 +131,4 @@ fn terms_of(scene: &Scene, size: ImageSize) -> (Vec<[Rgb; 6]>, Vec<Rgb>) {
             (terms, radiance)
         })
         .unzip()
-}
-
-/// One light's part of eq:local, as if nothing stood in its way.
-fn light(
-    source: &PointSource,
-    reflectance: &Reflectance,
-    to_source: &Ray,
-    n: DVec3,
-    to_eye: DVec3,
-) -> Rgb {
-    let distance = to_source.direction.length();
-    let to_light = to_source.direction / distance;
-    let g = attenuation(true, distance);
-    source.intensity_towards(to_light) * g * local(reflectance, n, to_light, to_eye)
 }

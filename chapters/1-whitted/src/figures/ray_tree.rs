@@ -16,13 +16,13 @@ use lancer_figure::{
     category_color, number,
 };
 use lancer_lesson::picture::shown;
+use lancer_lesson::view::{Side, View};
 use lancer_whitted::{AtLimit, RayEnd, RayNode, RayTree, Settings, Whitted, recursion};
 
 use super::whitted_picture;
 use crate::scenes;
 use crate::step::terms::Spawned;
 use crate::step::view::{calls, kind};
-use lancer_lesson::view::{Side, View};
 
 const SIZE: ImageSize = ImageSize::new(256, 256);
 /// A pixel whose ray passes through glass to plastic, the mirror and the floor.

@@ -12,12 +12,12 @@ use lancer_figure::{
     Axis, BarChart, Chart, Contender, Effort, Finished, Plate, Row, Series, Spread, Study, Trial,
     category_color, number,
 };
+use lancer_lesson::hard_boxes::{Class, HardBox};
+use lancer_lesson::naive::{epsilon_shadow_ray, min_max_box, textbook_sphere};
 
 use super::acne::Site;
 use super::quadratic::far_sphere;
 use super::watertight::{EDGES, VERTICES, aimed, leaking, triangles};
-use lancer_lesson::hard_boxes::{Class, HardBox};
-use lancer_lesson::naive::{epsilon_shadow_ray, min_max_box, textbook_sphere};
 
 /// Each kernel: what it tests, then its textbook forms and last the robust one.
 const KERNELS: [(&str, &[&str]); 4] = [

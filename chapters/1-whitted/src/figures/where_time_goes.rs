@@ -34,7 +34,7 @@ impl Recorder for Queries {
     }
 }
 
-/// Their names as methods.
+/// The indexes, by the names of their colours.
 const INDEXES: [&str; 2] = ["linear", "obvhs-bvh2"];
 /// The scenes with a level of detail.
 const FAMILIES: [&str; 2] = ["flake", "tetrahedra"];
@@ -65,7 +65,7 @@ impl<'s> Case<'s> {
         picture(scene, &*index, size, &mut queries);
         let (queries, mut counts) = (queries.0, TestCounts::default());
         for query in &queries {
-            index.watch(query.asked(), &mut counts);
+            index.watch(query.as_ref(), &mut counts);
         }
         Self { scene_name, scene, index_name, index, size, queries, counts }
     }
@@ -88,7 +88,7 @@ impl<'s> Case<'s> {
         (self.primitives() as f64, tests / self.queries.len() as f64)
     }
 
-    /// Only the queries. Returns the number of hits.
+    /// Asks the queries alone. Returns the number of hits.
     fn replay(&self) -> f64 {
         let hits = self.queries.iter().filter(|query| match query.wanted {
             Wanted::Closest => self.index.closest_hit(&query.ray, query.range).is_some(),

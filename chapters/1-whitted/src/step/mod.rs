@@ -39,9 +39,7 @@ pub fn walk(order: &WalkOrder<'_>) -> Walk {
     let WalkOrder { loaded, size, pixel: [x, y], .. } = *order;
     let scene = &loaded.scene;
     let index = ObvhsBvh2::build(scene);
-    let defaults = Settings::default();
-    let max_depth = order.max_depth.unwrap_or(defaults.max_depth);
-    let settings = Settings { max_depth, ..defaults };
+    let settings = Settings::to_depth(order.max_depth);
     let whitted = Whitted::new(World { scene, index: &index }, settings);
     let film = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
     let ray = scene.camera.primary_rays(size).through(film.x, film.y);

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use lancer_core::Rgb;
-use lancer_core::illumination::{Reflectance, ambient, attenuation, local};
+use lancer_core::illumination::{Reflectance, ambient, local};
 use lancer_core::optics::{Branches, reflect};
 use lancer_core::scene::{PointSource, Scene};
 use lancer_core::world::SurfacePoint;
@@ -85,9 +85,9 @@ impl LampTerm {
         n: DVec3,
         to_eye: DVec3,
     ) -> Self {
-        let shadow_ray = surface.spawn_to(source.position);
-        let distance = shadow_ray.direction.length();
-        let to_light = shadow_ray.direction * distance.recip();
+        let light = source.arriving(surface);
+        let distance = light.shadow_ray.direction.length();
+        let to_light = light.shadow_ray.direction * distance.recip();
         let intensity = source.intensity_towards(to_light);
         let part = |reflectance: &Reflectance| local(reflectance, n, to_light, to_eye);
         let (matte, shiny) = (
@@ -102,7 +102,7 @@ impl LampTerm {
             cos_mirror: reflect(-to_light, n).dot(to_eye),
             diffuse: part(&matte),
             specular: part(&shiny),
-            unshadowed: intensity * attenuation(true, distance) * part(reflectance),
+            unshadowed: light.unshadowed(reflectance, n, to_eye),
             shadow: None,
         }
     }
@@ -142,8 +142,7 @@ impl Spawned {
         };
         let branches = Branches::new(surface, material, tree.nodes[k].call.ray.direction);
         let [k_s, k_t] = branches.shares();
-        let total_reflection = branches.refracted.is_none() && material.k_t != Rgb::ZERO;
         let (mirror, refracted) = (child(RayKind::Mirror), child(RayKind::Refracted));
-        Self { k_s, mirror, k_t, refracted, total_reflection }
+        Self { k_s, mirror, k_t, refracted, total_reflection: branches.total_reflection }
     }
 }

@@ -2,6 +2,7 @@
 
 use glam::{DAffine3, DQuat, DVec3};
 use lancer_accel::Grid;
+use lancer_accel::structures::{STRUCTURES, structure};
 use lancer_core::generate::{cube, icosphere};
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::image::ImageSize;
@@ -18,7 +19,6 @@ use crate::aimed::{CLASSES, aimed};
 use crate::naive::{BareTree, LibraryWalk, first_hit_wins};
 use crate::rays::{Kind, Rays};
 use crate::scenes::family;
-use lancer_accel::structures::{STRUCTURES, structure};
 
 const NAIVE: [&str; 3] = ["boxes without a pad", "first hit in a cell wins", "obvhs' own f32 walk"];
 

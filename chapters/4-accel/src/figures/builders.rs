@@ -1,5 +1,6 @@
 //! 4.3: what it takes to build a tree, and what the tree saves each ray.
 
+use lancer_accel::structures::Built;
 use lancer_accel::{Bvh, ObvhsBvh2, Split};
 use lancer_core::image::ImageSize;
 use lancer_core::scene::Scene;
@@ -10,7 +11,6 @@ use lancer_figure::{
 
 use crate::rays::Rays;
 use crate::scenes::FAMILIES;
-use lancer_accel::structures::Built;
 
 type Build = for<'s> fn(&'s Scene) -> Built<'s>;
 

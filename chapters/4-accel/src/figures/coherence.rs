@@ -177,7 +177,7 @@ fn boxes_per_ray(index: &Wide, rays: &Rays, group: usize) -> f64 {
     let asked = |queries: &[Query<Ray>]| {
         let mut boxes = Boxes::default();
         for query in queries {
-            index.watch(query.asked(), &mut boxes);
+            index.watch(query.as_ref(), &mut boxes);
         }
         boxes.0.into_iter().collect::<HashSet<_>>().len()
     };

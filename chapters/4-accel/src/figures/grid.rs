@@ -2,6 +2,7 @@
 
 use glam::UVec3;
 use lancer_accel::GridBuilder;
+use lancer_accel::structures::structure;
 use lancer_core::image::ImageSize;
 use lancer_core::intersector::{Hit, Intersector, LinearScan, TestCounts};
 use lancer_core::scene::{Camera, Scene};
@@ -13,7 +14,6 @@ use lancer_figure::{
 use super::shaded;
 use crate::rays::Rays;
 use crate::scenes::family;
-use lancer_accel::structures::structure;
 
 /// Cells per primitive that are asked for.
 const DENSITIES: [f64; 10] = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];

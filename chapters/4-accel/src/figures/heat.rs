@@ -1,5 +1,6 @@
 //! 4.8: where in a picture each structure works, on one scale.
 
+use lancer_accel::structures::STRUCTURES;
 use lancer_core::geometry::Interval;
 use lancer_core::image::ImageSize;
 use lancer_core::intersector::{Hit, Intersector, LinearScan, Query, TestCounts};
@@ -10,7 +11,6 @@ use lancer_figure::{
 
 use super::shaded;
 use crate::scenes::family;
-use lancer_accel::structures::STRUCTURES;
 
 /// What every pixel's ray met, and the work it took.
 fn watch(

@@ -131,7 +131,7 @@ fn case_of(
     for rays in Rays::of(&scene, size, &tree) {
         for query in &rays.queries {
             of_rays.add(&tree, |tree, counts| {
-                tree.walk(query.asked(), counts);
+                tree.walk(query.as_ref(), counts);
             });
         }
     }

@@ -14,7 +14,7 @@ use crate::scenes::{FAMILIES, Family};
 
 /// Brute force is not asked for more triangles.
 const MOST_LINEAR: u32 = 1_000;
-/// Nor the BSP tree, which is the slowest to build; all indexes are compared at this size.
+/// The BSP tree, which is the slowest to build, is not asked for more; all indexes are compared at this size.
 const MOST_BSP: u32 = 100_000;
 /// Larger scenes are built of these kinds only: a plate should not take minutes.
 const LARGE: [&str; 2] = ["soup", "scan"];

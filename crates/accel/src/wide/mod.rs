@@ -12,7 +12,7 @@ use lancer_core::intersector::{
 };
 use lancer_core::scene::{PrimitiveId, Scene, Subset};
 
-use crate::binary_tree::{BinaryTree, Seen};
+use crate::binary_tree::{BinaryTree, Coverage};
 use crate::four_boxes::{Frame, FrameBox};
 use crate::front::Front;
 use collapse::WIDTH;
@@ -206,10 +206,10 @@ impl<'s> Wide<'s> {
 
     /// Checks that every box contains what is below it and that every one of these primitives is in one leaf.
     pub fn validate<'p>(&self, primitives: impl Into<Subset<'p>>) -> Result<(), String> {
-        let mut seen = Seen::new(primitives.into(), self.nodes.len());
+        let mut coverage = Coverage::new(primitives.into(), self.nodes.len());
         let mut pending = if self.nodes.is_empty() { Vec::new() } else { vec![(0, 0)] };
         while let Some((index, depth)) = pending.pop() {
-            seen.node()?;
+            coverage.node()?;
             if depth >= walk::MOST_LEVELS {
                 return Err(format!("node {index} is {depth} levels deep"));
             }
@@ -221,7 +221,7 @@ impl<'s> Wide<'s> {
                 }
                 if child.is_leaf() {
                     let primitives: Vec<PrimitiveId> = self.primitives(child).collect();
-                    seen.leaf(&self.frame, bounds, &primitives)?;
+                    coverage.leaf(&self.frame, bounds, &primitives)?;
                     continue;
                 }
                 let child = child.0 as usize;
@@ -234,7 +234,7 @@ impl<'s> Wide<'s> {
                 pending.push((child, depth + 1));
             }
         }
-        seen.all()
+        coverage.all()
     }
 
     /// The words of a leaf of triangles, as far as eight lanes of them are read at once.

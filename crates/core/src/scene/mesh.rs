@@ -1,3 +1,4 @@
+use std::collections::{HashMap, VecDeque};
 use std::ops::Range;
 
 use glam::{DAffine3, DVec3};
@@ -76,23 +77,36 @@ impl Mesh {
     /// told apart in the order of the triangles.
     pub fn outline(&self, face: FaceId) -> Vec<Vec<u32>> {
         let triangles = &self.triangles[self.faces[face.0 as usize].triangles()];
-        let mut border: Vec<[u32; 2]> = Vec::new();
-        for Triangle { vertices: [a, b, c], .. } in triangles {
-            for edge in [[*a, *b], [*b, *c], [*c, *a]] {
-                match border.iter().position(|known| *known == [edge[1], edge[0]]) {
-                    Some(inner) => _ = border.remove(inner),
-                    None => border.push(edge),
+        let edges = triangles.iter().flat_map(|triangle| {
+            let [a, b, c] = triangle.vertices;
+            [[a, b], [b, c], [c, a]]
+        });
+        // A corner that is named twice in a row makes no edge.
+        let edges: Vec<[u32; 2]> = edges.filter(|[from, to]| from != to).collect();
+        let mut inner: HashMap<[u32; 2], u32> = HashMap::new();
+        for &[from, to] in &edges {
+            *inner.entry([to, from]).or_default() += 1;
+        }
+        let mut next: HashMap<u32, VecDeque<u32>> = HashMap::new();
+        let mut starts = Vec::new();
+        for [from, to] in edges {
+            match inner.get_mut(&[from, to]) {
+                Some(count) if *count > 0 => *count -= 1,
+                _ => {
+                    starts.push(from);
+                    next.entry(from).or_default().push_back(to);
                 }
             }
         }
+        let mut step = |from: u32| next.get_mut(&from).and_then(VecDeque::pop_front);
         let mut loops = Vec::new();
-        while let Some(&[start, mut next]) = border.first() {
-            border.remove(0);
+        for start in starts {
+            let Some(mut here) = step(start) else { continue };
             let mut outline = vec![start];
-            while next != start {
-                outline.push(next);
-                let Some(k) = border.iter().position(|edge| edge[0] == next) else { break };
-                next = border.remove(k)[1];
+            while here != start {
+                outline.push(here);
+                let Some(after) = step(here) else { break };
+                here = after;
             }
             loops.push(outline);
         }
@@ -190,5 +204,17 @@ mod tests {
         };
         let loops = ring.outline(FaceId(0));
         assert_eq!(loops.iter().map(area).collect::<Vec<_>>(), [16.0, -4.0]);
+    }
+
+    /// A corner that is named twice, and a polygon so large that a search for each edge would take minutes.
+    #[test]
+    fn repeated_corners_and_large_polygons() {
+        let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)];
+        let repeated = mesh(&corners, &[&[[0, 0, 1], [0, 1, 2]]]);
+        assert_eq!(repeated.outline(FaceId(0)), [[0, 1, 2]]);
+        let count = 100_000;
+        let fan: Vec<[u32; 3]> = (1..count - 1).map(|k| [0, k, k + 1]).collect();
+        let large = mesh(&vec![(0.0, 0.0); count as usize], &[&fan]);
+        assert_eq!(large.outline(FaceId(0)), [(0..count).collect::<Vec<_>>()]);
     }
 }

@@ -186,8 +186,8 @@ fn frame(scene: &mut Scene, file: &str) -> Result<(), LoadError> {
     })
 }
 
-/// The share of its light that a material may send back before it is warned of: a mirror of 0.1 and glass of
-/// 0.9 with a small highlight are meant to be 1.
+/// The share of its light that a material may send back before it is warned of. Authors who share out all of it, to
+/// a mirror of 0.1 and glass of 0.9, often add a small highlight.
 const LARGEST_ALBEDO: f64 = 1.01;
 
 fn finish(file: &str, scene: Scene, material_names: Vec<String>, mut warnings: Warnings) -> Loaded {
