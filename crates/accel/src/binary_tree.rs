@@ -219,7 +219,8 @@ impl<'s> Coverage<'s> {
     ) -> Result<(), String> {
         for &primitive in primitives {
             let place = self.all.place(primitive);
-            let place = place.ok_or_else(|| format!("{primitive:?} is not among the primitives"))?;
+            let place =
+                place.ok_or_else(|| format!("{primitive:?} is not among the primitives"))?;
             if std::mem::replace(&mut self.seen[place], true) {
                 return Err(format!("{primitive:?} is in two leaves"));
             }
