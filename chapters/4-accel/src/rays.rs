@@ -77,11 +77,7 @@ impl Rays {
 
     /// Asks an index everything, and returns how many rays hit.
     pub fn trace(&self, index: &dyn Intersector) -> usize {
-        let hits = |query: &&Query<Ray>| match query.wanted {
-            Wanted::Closest => index.closest_hit(&query.ray, query.range).is_some(),
-            Wanted::Any => index.occluded(&query.ray, query.range),
-        };
-        self.queries.iter().filter(hits).count()
+        self.queries.iter().filter(|query| query.as_ref().hits(index)).count()
     }
 
     /// The answers of an index, and its work.

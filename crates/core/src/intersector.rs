@@ -59,6 +59,17 @@ impl<R> Query<R> {
     }
 }
 
+impl Query<&Ray> {
+    /// Asks an index whether there is such a hit.
+    #[inline]
+    pub fn hits(self, index: &dyn Intersector) -> bool {
+        match self.wanted {
+            Wanted::Closest => index.closest_hit(self.ray, self.range).is_some(),
+            Wanted::Any => index.occluded(self.ray, self.range),
+        }
+    }
+}
+
 impl Query<Ray> {
     /// The same query by a reference to its ray.
     #[inline]

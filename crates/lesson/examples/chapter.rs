@@ -167,3 +167,8 @@ fn main() {
         println!("{} {}: proved", verified.id, verified.name);
     }
 }
+
+#[test]
+fn the_chapter_proves_itself() {
+    main();
+}

@@ -196,7 +196,7 @@ const SAMPLES: [u32; 3] = [1, 4, 16];
 const SEED: u64 = 5;
 
 /// What a contender made.
-struct Outcome {
+struct Traced {
     image: Image,
     /// The samples per pixel of Whitted's part.
     samples: u32,
@@ -245,12 +245,12 @@ pub fn make(effort: Effort) -> Finished {
     let run = |samples, light_rays| {
         let (image, rays) = whitted(&scene, samples, SEED);
         if light_rays == 0 {
-            return (Outcome { image, samples, solid_angle: f64::NAN }, rays);
+            return (Traced { image, samples, solid_angle: f64::NAN }, rays);
         }
         let light = forward(&stage, &pinhole, light_rays);
         let radiances = light.film.iter().map(|radiance| radiance.as_vec3().to_array());
         let image = pixelwise(&image, &Image::from_pixels(size, radiances.collect()), |a, b| a + b);
-        (Outcome { image, samples, solid_angle: light.solid_angle }, rays + light.rays)
+        (Traced { image, samples, solid_angle: light.solid_angle }, rays + light.rays)
     };
     let settings =
         SAMPLES.map(|samples| (WHITTED, method_color("whitted"), samples, 0)).into_iter();
@@ -273,11 +273,11 @@ pub fn make(effort: Effort) -> Finished {
     blind.materials[stage.mirror.0 as usize].k_s = Rgb::ZERO;
     let total =
         |image: &Image| beside.iter().map(|&[x, y]| image.get(x, y).element_sum()).sum::<f64>();
-    let share = |outcome: &Outcome| {
+    let share = |outcome: &Traced| {
         let without = whitted(&blind, outcome.samples, SEED).0;
         total(&pixelwise(&outcome.image, &without, |a, b| a - b)) / total(&missing)
     };
-    let study = Study::measure("rays", effort.runs(3), contenders, |outcome: &Outcome| {
+    let study = Study::measure("rays", effort.runs(3), contenders, |outcome: &Traced| {
         let errors = errors_of(&reference, &outcome.image);
         let more = [("mirrored_light", share(outcome)), ("solid_angle", outcome.solid_angle)];
         errors.into_iter().chain(more).collect()
@@ -296,7 +296,7 @@ pub fn make(effort: Effort) -> Finished {
         100.0 * found,
     );
 
-    let tile = |trial: &Trial<Knob, Outcome>| {
+    let tile = |trial: &Trial<Knob, Traced>| {
         let error = number(trial.error("RMSE"));
         Tile::new(&trial.curve, shown(&trial.outcome.image))
             .subtitle(format!("{}, RMSE {error}", trial.knob))
@@ -308,7 +308,7 @@ pub fn make(effort: Effort) -> Finished {
             .subtitle("closed form"),
     );
     let scale = HeatScale::log("|error|", 1e-3, 1.0);
-    let errors = |title: String, trial: &Trial<Knob, Outcome>| {
+    let errors = |title: String, trial: &Trial<Knob, Traced>| {
         error_tile(title, &scale, &reference, &trial.outcome.image)
     };
     let maps = Montage::new()

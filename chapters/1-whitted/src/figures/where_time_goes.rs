@@ -3,7 +3,7 @@
 use lancer_accel::ObvhsBvh2;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::image::ImageSize;
-use lancer_core::intersector::{Intersector, LinearScan, Query, TestCounts, Wanted};
+use lancer_core::intersector::{Intersector, LinearScan, Query, TestCounts};
 use lancer_core::scene::Scene;
 use lancer_core::world::World;
 use lancer_figure::{
@@ -90,11 +90,7 @@ impl<'s> Case<'s> {
 
     /// Asks the queries alone. Returns the number of hits.
     fn replay(&self) -> f64 {
-        let hits = self.queries.iter().filter(|query| match query.wanted {
-            Wanted::Closest => self.index.closest_hit(&query.ray, query.range).is_some(),
-            Wanted::Any => self.index.occluded(&query.ray, query.range),
-        });
-        hits.count() as f64
+        self.queries.iter().filter(|query| query.as_ref().hits(&*self.index)).count() as f64
     }
 }
 

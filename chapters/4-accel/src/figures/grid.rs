@@ -70,7 +70,7 @@ impl Questions {
 }
 
 /// A grid of some density, with the mailbox and without.
-struct Trial {
+struct GridTrial {
     density: f64,
     resolution: UVec3,
     bytes: f64,
@@ -78,12 +78,12 @@ struct Trial {
     unmarked: Work,
 }
 
-fn sweep(scene: &Scene, questions: &Questions) -> Vec<Trial> {
+fn sweep(scene: &Scene, questions: &Questions) -> Vec<GridTrial> {
     let primitives = scene.primitives().len() as f64;
     let trial = |density| {
         let [grid, unmarked] =
             [true, false].map(|mailboxing| GridBuilder { density, mailboxing }.build(scene));
-        Trial {
+        GridTrial {
             density,
             resolution: grid.resolution(),
             bytes: grid.memory() as f64 / primitives,
@@ -94,14 +94,14 @@ fn sweep(scene: &Scene, questions: &Questions) -> Vec<Trial> {
     DENSITIES.into_iter().map(trial).collect()
 }
 
-impl Trial {
+impl GridTrial {
     fn sum(&self) -> f64 {
         self.work.sum()
     }
 }
 
 /// The trial of the least work.
-fn best(trials: &[Trial]) -> &Trial {
+fn best(trials: &[GridTrial]) -> &GridTrial {
     let least = trials.iter().min_by(|a, b| a.sum().total_cmp(&b.sum()));
     least.expect("densities were tried")
 }
@@ -109,8 +109,8 @@ fn best(trials: &[Trial]) -> &Trial {
 /// What was measured: grids of all densities over triangles evenly spread and over the stadium, and the trees over
 /// the stadium with their bytes per triangle.
 struct Measured {
-    even: Vec<Trial>,
-    uneven: Vec<Trial>,
+    even: Vec<GridTrial>,
+    uneven: Vec<GridTrial>,
     others: Vec<(&'static str, f64, Work)>,
 }
 
@@ -127,9 +127,9 @@ impl Measured {
 
     fn claim(&self) -> (String, bool) {
         let Self { even, uneven, others } = self;
-        let of = |value: fn(&Trial) -> f64| -> Vec<f64> { even.iter().map(value).collect() };
+        let of = |value: fn(&GridTrial) -> f64| -> Vec<f64> { even.iter().map(value).collect() };
         let falls = |values: &[f64]| values.is_sorted_by(|a, b| a >= b);
-        let sums = of(Trial::sum);
+        let sums = of(GridTrial::sum);
         let lowest = best(even);
         let bottom = even.iter().position(|trial| trial.density == lowest.density).unwrap_or(0);
         let one_minimum = falls(&sums[..=bottom]) && sums[bottom..].is_sorted();
@@ -140,7 +140,7 @@ impl Measured {
             && at_ends.iter().all(|end| *end > 1.5 * lowest.sum());
         let worst = others.iter().map(|(_, _, work)| work.sum()).fold(0.0, f64::max);
         let lost = best(uneven).sum() / worst;
-        let is_right = |trial: &Trial| !trial.work.wrong && !trial.unmarked.wrong;
+        let is_right = |trial: &GridTrial| !trial.work.wrong && !trial.unmarked.wrong;
         let right = even.iter().chain(uneven).all(is_right)
             && others.iter().all(|(_, _, work)| !work.wrong);
         let claim = format!(
@@ -154,7 +154,7 @@ impl Measured {
     }
 
     fn work(&self) -> Chart {
-        let line = |label: &str, color, value: fn(&Trial) -> f64| {
+        let line = |label: &str, color, value: fn(&GridTrial) -> f64| {
             let points = self.even.iter().map(|trial| (trial.density, value(trial)));
             Series::new(label, category_color(color)).points(points)
         };
@@ -168,7 +168,7 @@ impl Measured {
     }
 
     fn memory(&self) -> Chart {
-        let series = |label: &str, trials: &[Trial]| {
+        let series = |label: &str, trials: &[GridTrial]| {
             let points = trials.iter().map(|trial| (trial.density, trial.bytes));
             Series::new(label, method_color("grid")).points(points)
         };
@@ -236,7 +236,7 @@ impl Measured {
 }
 
 /// Cells and tests together, by density.
-fn sums(label: &str, trials: &[Trial]) -> Series {
+fn sums(label: &str, trials: &[GridTrial]) -> Series {
     let points = trials.iter().map(|trial| (trial.density, trial.sum()));
     Series::new(label, method_color("grid")).points(points)
 }
@@ -262,7 +262,7 @@ pub fn make(effort: Effort) -> Finished {
     let (claim, holds) = measured.claim();
     let shown_size = effort.pick(ImageSize::new(48, 32), ImageSize::new(360, 240));
     let Measured { even, uneven, .. } = &measured;
-    let spared = |trial: &Trial| 100.0 * (1.0 - trial.work.tests / trial.unmarked.tests);
+    let spared = |trial: &GridTrial| 100.0 * (1.0 - trial.work.tests / trial.unmarked.tests);
     let plate = Plate::new("4.5", "How many cells a grid should have", claim, holds)
         .panel(Row::new().panel(1.4, measured.work()).panel(1.0, measured.memory()))
         .panel(
@@ -296,6 +296,6 @@ pub fn make(effort: Effort) -> Finished {
 }
 
 /// The grid with its default density.
-fn at_one(trials: &[Trial]) -> &Trial {
+fn at_one(trials: &[GridTrial]) -> &GridTrial {
     trials.iter().find(|trial| trial.density == 1.0).expect("the default density was tried")
 }
