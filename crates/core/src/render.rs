@@ -269,8 +269,8 @@ impl<C> Tile<C> {
     }
 }
 
-/// Samples that are answered at once, at most.
-const BATCH: usize = 256;
+/// Samples that are answered at once, at most: with their rays, hits and radiances they fit into the first cache.
+const BATCH: usize = 128;
 
 /// Columns and rows of a rectangle along Morton's curve, the order in which a tile is rendered: 64 in a row
 /// are a square of 8 × 8, or close to each other.
