@@ -34,20 +34,14 @@ pub fn indexes() -> String {
     list(&STRUCTURES.map(|structure| structure.name), "or")
 }
 
-/// Warns of each setting that is given on the command line and that `whom` does not use.
+/// Warns of each flag that is given although `whom` does not use what it sets.
 pub fn warn_of_unused(
-    given: impl IntoIterator<Item = (Setting, bool)>,
+    flags: impl IntoIterator<Item = (&'static str, Setting, bool)>,
     used: &[Setting],
     whom: &str,
 ) {
-    for (setting, is_given) in given {
+    for (flag, setting, is_given) in flags {
         if is_given && !used.contains(&setting) {
-            let flag = match setting {
-                Setting::Sampling => "--spp",
-                Setting::Adaptive => "--adaptive",
-                Setting::MaxDepth => "--depth",
-                Setting::Index | Setting::Beams => "--index",
-            };
             eprintln!("warning: {flag} changes nothing: {whom} does not use it");
         }
     }

@@ -250,12 +250,13 @@ fn place(scene: &mut Scene, headlight: bool, args: &Args) -> Result<()> {
 
 /// Says what the method takes no notice of: flags, and what is in the scene.
 fn warn(method: &Method, scene: &Scene, args: &Args) {
-    let given = [
-        (Setting::Sampling, args.spp != 1 || args.seed.is_some()),
-        (Setting::Adaptive, args.adaptive.is_some()),
-        (Setting::MaxDepth, args.depth.is_some()),
+    let flags = [
+        ("--spp", Setting::Sampling, args.spp != 1),
+        ("--seed", Setting::Sampling, args.seed.is_some()),
+        ("--adaptive", Setting::Adaptive, args.adaptive.is_some()),
+        ("--depth", Setting::MaxDepth, args.depth.is_some()),
     ];
-    warn_of_unused(given, method.uses, method.name);
+    warn_of_unused(flags, method.uses, method.name);
     if args.spp == 1 && method.uses.contains(&Setting::Sampling) {
         let given = [("--seed", args.seed.is_some()), ("--adaptive", args.adaptive.is_some())];
         for (flag, _) in given.into_iter().filter(|(_, is_given)| *is_given) {

@@ -69,8 +69,11 @@ pub fn run(args: &Args) -> Result<()> {
     for warning in &loaded.warnings {
         eprintln!("warning: {warning}");
     }
-    let given = [(Setting::MaxDepth, args.depth.is_some()), (Setting::Index, index.is_some())];
-    warn_of_unused(given, algorithm.uses, algorithm.name);
+    let flags = [
+        ("--depth", Setting::MaxDepth, args.depth.is_some()),
+        ("--index", Setting::Index, index.is_some()),
+    ];
+    warn_of_unused(flags, algorithm.uses, algorithm.name);
     let walk = (algorithm.walk)(&WalkOrder {
         name: &args.scene,
         loaded: &loaded,

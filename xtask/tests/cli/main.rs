@@ -152,6 +152,7 @@ fn wrong_options_are_refused_with_a_cure() {
         ["--also", "samples"],
         ["--also", "smples=new.exr"],
         ["--also", "samples=new.jpg"],
+        ["--also", "samples=old.png"],
     ]), @r"
     error: invalid value '1,2,3' for '--light <X,Y,Z,INTENSITY>': 4 numbers separated by commas are wanted, 3 are given
     error: --light: an intensity is negative; the fourth number must be at least 0
@@ -164,6 +165,7 @@ fn wrong_options_are_refused_with_a_cure() {
     error: invalid value 'samples' for '--also <NAME=FILE>': write NAME=FILE, such as samples=samples.exr
     error: unknown by-product of whitted `smples`; known: samples
     error: --also: what kind of picture is `new.jpg`? Its name must end in .png (sRGB) or .exr (linear)
+    error: --also: old.png is written twice
     ");
 }
 
@@ -182,6 +184,10 @@ fn what_has_no_effect_is_warned_of() {
     assert_snapshot!(render("whitted", &["--method=appel"]), @"warning: appel leaves out what the scene has: mirrors (k_s), glass (k_t)");
     assert_snapshot!(render("room", &["--depth=3"]), @"warning: whitted leaves out what the scene has: the size of lamps (they count as points)");
     assert_eq!(render("whitted", &["--depth=3", "--spp=2", "--adaptive=0.1", "--seed=4"]), "");
+    assert_snapshot!(render("whitted", &["--seed=4", "--adaptive=0.1"]), @r"
+    warning: --seed changes nothing: the one sample of --spp 1 is the pixel's centre
+    warning: --adaptive changes nothing: the one sample of --spp 1 is the pixel's centre
+    ");
     let walk = ["--scene=whitted", "--pixel=1,1", "--size=8x8"];
     assert_snapshot!(warnings(&[&["step", "whitted", "--index=kd"], &walk[..]].concat()), @"warning: --index changes nothing: whitted does not use it");
     assert_snapshot!(warnings(&[&["step", "accel", "--index=kd", "--depth=2"], &walk[..]].concat()), @"warning: --depth changes nothing: accel does not use it");
