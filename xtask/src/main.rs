@@ -1,11 +1,12 @@
 //! `cargo xtask`: the course's command line. It parses, calls and reports; the algorithms are in
 //! `crates/`, the figures in `chapters/`.
 
-/// Prints a line. Unlike `println!` it does not panic when nobody reads on, as in `… | head`.
+/// Prints a line. Unlike `println!` it does not panic when nobody reads on, as in `… | head`, and it leaves
+/// out colours where there are none, or `NO_COLOR` forbids them.
 macro_rules! say {
     ($($text:tt)*) => {{
         use std::io::Write;
-        let _ = writeln!(std::io::stdout(), $($text)*);
+        let _ = writeln!(anstream::stdout(), $($text)*);
     }};
 }
 

@@ -23,6 +23,11 @@ pub fn watch_for_interrupt() -> Result<()> {
     .context("cannot watch for Ctrl-C")
 }
 
+/// Whether Ctrl-C has been pressed.
+pub fn is_interrupted() -> bool {
+    INTERRUPTED.load(Ordering::Relaxed)
+}
+
 /// A bar with an estimate of the time left; on a terminal only, and only for work that takes a while.
 pub fn bar(length: u64, what: &str) -> ProgressBar {
     let bar = ProgressBar::new(length);

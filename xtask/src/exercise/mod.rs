@@ -2,12 +2,16 @@
 
 mod build;
 mod catalogue;
+mod keys;
+mod process;
 mod solution;
 mod student;
 mod verify;
 mod watch;
+mod words;
 mod workspace;
 
+use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
@@ -18,11 +22,12 @@ use build::shown;
 use catalogue::{Entry, entries, find};
 use solution::item;
 use student::{Checked, State, Student};
+use words::say_wrapped;
 use workspace::Workspace;
 
 /// Exercises: you write the functions of a ray tracer, one at a time, and see what they draw.
 ///
-/// Your files are in the folder work, which git ignores. ID is E1.6, 6 or reflected-ray; without it, the
+/// Your files are in the folder work, which git ignores. ID is E1.6, 1.6 or reflected-ray; without it, the
 /// first exercise that does not pass yet is meant.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
@@ -39,7 +44,7 @@ pub struct Args {
 /// An exercise.
 #[derive(clap::Args)]
 struct Choice {
-    /// An exercise: E1.6, 6 or reflected-ray
+    /// An exercise: E1.6, 1.6 or reflected-ray
     id: Option<String>,
 }
 
@@ -59,7 +64,7 @@ enum Action {
         #[arg(long)]
         all: bool,
     },
-    /// Checks after each change, until Ctrl-C
+    /// Checks after each change, until Ctrl-C; at a terminal, single keys do the rest
     Watch(Choice),
     /// Helps: with the idea, the formula, or almost the code
     Hint {
@@ -70,12 +75,18 @@ enum Action {
         n: u8,
     },
     /// Draws your picture beside the course's; succeeds if they are the same
-    Show(Choice),
+    Show {
+        #[command(flatten)]
+        choice: Choice,
+        /// Opens the picture in the system's viewer
+        #[arg(long)]
+        open: bool,
+    },
     /// Prints the course's own answer
     Solution(Choice),
     /// Puts the stub back; your file is kept as .bak
     Reset {
-        /// An exercise: E1.6, 6 or reflected-ray
+        /// An exercise: E1.6, 1.6 or reflected-ray
         id: String,
     },
     /// For maintainers: proves that the checks pass right answers and catch every known slip
@@ -84,7 +95,7 @@ enum Action {
 
 pub fn run(args: &Args) -> Result<ExitCode> {
     match &args.action {
-        Action::List => list()?,
+        Action::List => list(&mut Student::open()?)?,
         Action::Start(choice) => start(choice)?,
         Action::Next => start(&Choice { id: None })?,
         Action::Check { choice, all } => {
@@ -101,10 +112,14 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             watch::watch(choice.id.as_deref().map(find).transpose()?)?;
         }
         Action::Hint { choice, n } => hint(choice, usize::from(*n))?,
-        Action::Show(choice) => {
+        Action::Show { choice, open } => {
             let mut student = Student::open()?;
             let Some(entry) = chosen(choice, &mut student)? else { return Ok(ExitCode::SUCCESS) };
-            return Ok(report(&student.show(&entry)?));
+            let shown = student.show(&entry)?;
+            if *open {
+                open_picture(&student.workspace().figure(&entry));
+            }
+            return Ok(report(&shown));
         }
         Action::Solution(choice) => solution(choice)?,
         Action::Reset { id } => reset(id)?,
@@ -113,8 +128,17 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// A machine without a viewer, or without a screen, still has the file.
+fn open_picture(picture: &Path) {
+    if picture.exists()
+        && let Err(error) = open::that_detached(picture)
+    {
+        eprintln!("warning: cannot open {}: {error}", shown(picture));
+    }
+}
+
 fn report(checked: &Checked) -> ExitCode {
-    say!("{}", checked.text.trim_end());
+    say_wrapped(&checked.text);
     if checked.passes { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
@@ -138,8 +162,7 @@ fn chosen(choice: &Choice, student: &mut Student) -> Result<Option<Entry>> {
     Ok(first)
 }
 
-fn list() -> Result<()> {
-    let mut student = Student::open()?;
+fn list(student: &mut Student) -> Result<()> {
     let next = student.first_not_passing()?.map(|entry| entry.card.id);
     let entries = entries();
     let longest = entries.iter().map(|entry| entry.card.title.chars().count()).max().unwrap_or(0);
@@ -162,32 +185,44 @@ fn list() -> Result<()> {
 fn start(choice: &Choice) -> Result<()> {
     let mut student = Student::open()?;
     if let Some(entry) = chosen(choice, &mut student)? {
-        say!("{}", student.start(&entry)?.trim_end());
+        say_wrapped(&student.start(&entry)?);
     }
     Ok(())
 }
 
 fn hint(choice: &Choice, n: usize) -> Result<()> {
-    let Some(entry) = chosen(choice, &mut Student::open()?)? else { return Ok(()) };
-    let card = entry.card;
-    say!("{}, hint {n} of 3: {}", entry.title(), card.hints[n - 1]);
-    match n {
-        3 => say!("The course's own answer: cargo xtask exercise solution {}", card.name),
-        _ => say!("More: cargo xtask exercise hint {} -n {}", card.name, n + 1),
+    if let Some(entry) = chosen(choice, &mut Student::open()?)? {
+        say_hint(&entry, n);
     }
     Ok(())
 }
 
+/// Says the n-th hint, from 1.
+fn say_hint(entry: &Entry, n: usize) {
+    let card = entry.card;
+    say_wrapped(&format!("{}, hint {n} of 3: {}", entry.title(), card.hints[n - 1]));
+    match n {
+        3 => say!("The course's own answer: cargo xtask exercise solution {}", card.name),
+        _ => say!("More: cargo xtask exercise hint {} -n {}", card.name, n + 1),
+    }
+}
+
 fn solution(choice: &Choice) -> Result<()> {
     let mut student = Student::open()?;
-    let Some(entry) = chosen(choice, &mut student)? else { return Ok(()) };
+    match chosen(choice, &mut student)? {
+        Some(entry) => say_solution(&mut student, &entry),
+        None => Ok(()),
+    }
+}
+
+fn say_solution(student: &mut Student, entry: &Entry) -> Result<()> {
     let answer = entry.card.solution;
     let source = std::fs::read_to_string(root().join(answer.file))
         .with_context(|| format!("cannot read {}", answer.file))?;
     let found = item(&source, answer.item)
         .with_context(|| format!("there is no `{}` in {}", answer.item, answer.file))?;
-    let path = shown(&student.workspace().path(&entry));
-    match student.state(&entry)? {
+    let path = shown(&student.workspace().path(entry));
+    match student.state(entry)? {
         State::Passing => say!("{}: yours is in {path}", entry.title()),
         State::New => say!("{}: you have not begun this one", entry.title()),
         _ => say!("{}: yours, in {path}, does not pass yet", entry.title()),

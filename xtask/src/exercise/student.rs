@@ -5,8 +5,9 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
 
-use super::build::{Answer, Broken, ask, build, shown};
+use super::build::{Broken, build, shown};
 use super::catalogue::{Chapter, Entry, entries};
+use super::process::{Answer, ask};
 use super::workspace::{Started, Workspace};
 
 /// Where a student stands with an exercise.
@@ -134,9 +135,10 @@ impl Student {
     /// If there is nothing to check, or nothing can be compiled or run at all.
     pub fn check(&mut self, entry: Option<Entry>, all: bool) -> Result<Checked> {
         if let Some(entry) = entry {
-            self.require_started(&entry)?;
+            self.require_started(Some(&entry))?;
             return self.check_one(&entry, all);
         }
+        self.require_started(None)?;
         let started = self.workspace.started();
         let mut last_edited = None;
         let mut passing = Vec::new();
@@ -155,32 +157,71 @@ impl Student {
                 last_edited = Some((edited, checked));
             }
         }
-        match last_edited {
-            Some((_, checked)) => Ok(checked),
-            None => bail!("no exercise is begun; begin with: cargo xtask exercise start"),
-        }
+        last_edited.map(|(_, checked)| checked).context("the files of the exercises are gone")
     }
 
-    /// Refuses an exercise that the student has no file for.
+    /// Refuses an exercise that the student has no file for, and if none is named, to have none at all.
     ///
     /// # Errors
     /// If there is none.
-    pub fn require_started(&self, entry: &Entry) -> Result<()> {
-        if !self.workspace.is_started(entry) {
-            bail!(
+    pub fn require_started(&self, entry: Option<&Entry>) -> Result<()> {
+        match entry {
+            None if self.workspace.started().is_empty() => {
+                bail!("no exercise is begun; begin with: cargo xtask exercise start")
+            }
+            Some(entry) if !self.workspace.is_started(entry) => bail!(
                 "{}: there is no file {}; make it with: cargo xtask exercise start {}",
                 entry.title(),
                 shown(&self.workspace.path(entry)),
                 entry.card.name
-            );
+            ),
+            _ => Ok(()),
         }
-        Ok(())
     }
 
     fn check_one(&mut self, entry: &Entry, all: bool) -> Result<Checked> {
         let name = entry.card.name;
         let how = if all { "check-all" } else { "check" };
-        self.ask(entry, &[how, name])
+        let mut checked = self.ask(entry, &[how, name])?;
+        if checked.passes {
+            checked.text.push_str(&self.wrong_ones_used(entry)?);
+        }
+        Ok(checked)
+    }
+
+    /// A word for each exercise that an answer calls and that is begun but not right: the checks of the one
+    /// need not notice what is wrong with the other.
+    fn wrong_ones_used(&mut self, entry: &Entry) -> Result<String> {
+        let code = std::fs::read_to_string(self.workspace.path(entry)).unwrap_or_default();
+        let mut text = String::new();
+        for other in self.workspace.started() {
+            let is_called = |function: &&str| code.contains(&format!("yours::{function}"));
+            if other.chapter == entry.chapter
+                && other.card.functions.iter().any(is_called)
+                && self.state(&other)? != State::Passing
+            {
+                let _ = writeln!(
+                    text,
+                    "But it calls your {}, which does not pass: cargo xtask exercise check {}",
+                    other.title(),
+                    other.card.name
+                );
+            }
+        }
+        Ok(text)
+    }
+
+    /// How many exercises pass, and of how many.
+    ///
+    /// # Errors
+    /// As [`Student::state`].
+    pub fn progress(&mut self) -> Result<(usize, usize)> {
+        let entries = entries();
+        let mut done = 0;
+        for entry in &entries {
+            done += usize::from(self.state(entry)? == State::Passing);
+        }
+        Ok((done, entries.len()))
     }
 
     /// Draws an exercise's picture.
@@ -188,7 +229,7 @@ impl Student {
     /// # Errors
     /// If the student has not begun, or nothing can be compiled or run at all.
     pub fn show(&mut self, entry: &Entry) -> Result<Checked> {
-        self.require_started(entry)?;
+        self.require_started(Some(entry))?;
         let figure = self.workspace.figure(entry);
         if let Some(folder) = figure.parent() {
             std::fs::create_dir_all(folder)

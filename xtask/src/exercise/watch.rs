@@ -1,82 +1,148 @@
-//! Checks again whenever a file has changed. The times of files are looked at, since systems do not pass
-//! on their notices from a host to its containers.
+//! Checks again whenever a file says something else. Files are read again and again, since systems do not
+//! pass on their notices from a host to its containers, and a file that is moved back has an old time.
 
-use std::io::{BufRead, IsTerminal, stdin};
-use std::path::PathBuf;
-use std::sync::atomic::Ordering;
-use std::sync::mpsc::{self, Receiver};
 use std::thread;
-use std::time::{Duration, SystemTime};
+use std::time::{Duration, Instant};
 
 use anyhow::Result;
 
-use super::catalogue::Entry;
-use super::say_next;
-use super::student::Student;
+use super::catalogue::{Entry, entries};
+use super::keys::Keys;
+use super::student::{State, Student};
+use super::words::say_wrapped;
 use super::workspace::Workspace;
-use crate::progress::{self, INTERRUPTED};
+use super::{say_next, say_solution};
+use crate::progress;
 
-const PERIOD: Duration = Duration::from_millis(300);
+const PERIOD: Duration = Duration::from_millis(200);
+/// Editors and sync tools take a file away before they put the new one there.
+const GAP: Duration = Duration::from_secs(2);
 
 /// Checks one exercise, or without one the first that does not pass, until Ctrl-C.
 ///
 /// # Errors
 /// If there is nothing to check, or the folder cannot be written.
-pub fn watch(mut entry: Option<Entry>) -> Result<()> {
+pub fn watch(entry: Option<Entry>) -> Result<()> {
     progress::watch_for_interrupt()?;
-    let enter = listen();
-    while !is_interrupted() {
-        let mut student = Student::open()?;
-        let seen = files(student.workspace());
-        let result = student.check(entry, false);
-        if is_interrupted() {
+    let mut watch = Watch { entry, keys: Keys::listen(), hints: 0 };
+    let mut student = Student::open()?;
+    student.require_started(entry.as_ref())?;
+    while !progress::is_interrupted() {
+        let seen = contents(student.workspace());
+        match watch.check(&mut student) {
+            Ok(()) => {}
+            Err(_) if progress::is_interrupted() => break,
+            Err(error) => say!("error: {error:#}\n\n── waiting for a change; Ctrl-C ends ──"),
+        }
+        if !watch.wait(&mut student, seen) {
             break;
         }
-        let checked = result?;
-        say!("{}", checked.text.trim_end());
-        let next = if checked.passes { student.first_not_passing()? } else { None };
-        if let (Some(next), true) = (&next, enter.is_some()) {
-            say!("Enter starts the next: {}", next.title());
-        } else if checked.passes {
-            say_next(next.as_ref());
-        }
-        say!("\n── waiting for a change; Ctrl-C ends ──");
-        while !is_interrupted() && files(student.workspace()) == seen {
-            if enter.as_ref().is_some_and(|lines| lines.try_recv().is_ok())
-                && let Some(next) = next
-            {
-                say!("{}", student.start(&next)?);
-                entry = None;
-            }
-            thread::sleep(PERIOD);
-        }
+        student = Student::open()?;
     }
     say!("\nThe watch has ended.");
     Ok(())
 }
 
-fn is_interrupted() -> bool {
-    INTERRUPTED.load(Ordering::Relaxed)
+/// What is watched, and how far the student has asked.
+struct Watch {
+    entry: Option<Entry>,
+    keys: Option<Keys>,
+    /// How many hints they have seen since the last change of exercise.
+    hints: usize,
 }
 
-/// The student's files and when they were written.
-fn files(workspace: &Workspace) -> Vec<(PathBuf, Option<SystemTime>)> {
-    let started = workspace.started();
-    started.iter().map(|entry| (workspace.path(entry), workspace.edited(entry))).collect()
-}
-
-/// The lines typed at a terminal, if there is one.
-fn listen() -> Option<Receiver<String>> {
-    if !stdin().is_terminal() {
-        return None;
-    }
-    let (sender, receiver) = mpsc::channel();
-    thread::spawn(move || {
-        for line in stdin().lock().lines().map_while(Result::ok) {
-            if sender.send(line).is_err() {
-                break;
+impl Watch {
+    fn check(&mut self, student: &mut Student) -> Result<()> {
+        let checked = student.check(self.entry, false)?;
+        say_wrapped(&checked.text);
+        if checked.passes {
+            let next = student.first_not_passing()?;
+            match (&next, &self.keys) {
+                (Some(next), Some(_)) => say!("n goes on to {}", next.title()),
+                _ => say_next(next.as_ref()),
             }
         }
-    });
-    Some(receiver)
+        self.say_keys(student)
+    }
+
+    /// How far the student is, and what they may type.
+    fn say_keys(&self, student: &mut Student) -> Result<()> {
+        let (done, all) = student.progress()?;
+        say!("\n── {done} of {all} exercises done; waiting for a change; Ctrl-C ends ──");
+        if self.keys.is_some() {
+            say!("   n next · h hint · s show · o solution · l list · c check · q quit");
+        }
+        Ok(())
+    }
+
+    /// Waits until a file says something else, and does meanwhile what the keys say. False at the end.
+    fn wait(&mut self, student: &mut Student, seen: Vec<Option<u64>>) -> bool {
+        let mut gap: Option<Instant> = None;
+        while !progress::is_interrupted() {
+            let now = contents(student.workspace());
+            let is_gone = |(old, new): (&Option<u64>, &Option<u64>)| old.is_some() && new.is_none();
+            if now == seen {
+                gap = None;
+            } else if !seen.iter().zip(&now).any(is_gone)
+                || gap.get_or_insert_with(Instant::now).elapsed() > GAP
+            {
+                return true;
+            }
+            match self.keys.as_ref().and_then(Keys::next) {
+                Some('q') => return false,
+                Some('c') => return true,
+                Some(key) => match self.press(key, student) {
+                    Ok(true) => return true,
+                    Ok(false) => {}
+                    Err(error) => say!("error: {error:#}"),
+                },
+                None => thread::sleep(PERIOD),
+            }
+        }
+        false
+    }
+
+    /// Does what a key says; whether to check again.
+    fn press(&mut self, key: char, student: &mut Student) -> Result<bool> {
+        if key == 'l' {
+            super::list(student)?;
+            return Ok(false);
+        }
+        let next = student.first_not_passing()?;
+        let Some(entry) = self.entry.or(next) else {
+            say!("All exercises pass.");
+            return Ok(false);
+        };
+        match key {
+            'n' => match next {
+                Some(next) if student.state(&next)? == State::New => {
+                    say_wrapped(&student.start(&next)?);
+                    self.entry = Some(next);
+                    self.hints = 0;
+                    return Ok(true);
+                }
+                Some(next) => {
+                    self.entry = Some(next);
+                    return Ok(true);
+                }
+                None => say!("All exercises pass."),
+            },
+            'h' => {
+                self.hints = (self.hints + 1).min(3);
+                super::say_hint(&entry, self.hints);
+            }
+            's' => say_wrapped(&student.show(&entry)?.text),
+            'o' => say_solution(student, &entry)?,
+            _ if key.is_whitespace() => {}
+            _ => say!("   n next · h hint · s show · o solution · l list · c check · q quit"),
+        }
+        Ok(false)
+    }
+}
+
+/// What stands in each exercise's file, as a number; nothing where there is none.
+fn contents(workspace: &Workspace) -> Vec<Option<u64>> {
+    let of_entry =
+        |entry: &Entry| workspace.is_started(entry).then(|| workspace.contents(&[*entry]));
+    entries().iter().map(of_entry).collect()
 }

@@ -1,9 +1,11 @@
-//! The student's folder: a small workspace of its own, whose sources are theirs and whose other files are
-//! made anew whenever they are not as they should be.
+//! The student's folder: a small workspace of its own for their editor, whose sources are theirs and whose
+//! other files are made anew whenever they are not as they should be. The programs that are run are compiled
+//! from the same sources by `super::build`.
 
 use std::env;
 use std::fmt::Write;
 use std::fs;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -52,13 +54,8 @@ impl Workspace {
         Ok(Self { folder })
     }
 
-    /// Where the folder is.
-    pub fn folder(&self) -> &Path {
-        &self.folder
-    }
-
-    /// Where its programs are compiled to: beside the course's own, so that neither waits for the other.
-    pub fn target(&self) -> PathBuf {
+    /// Where an editor compiles it to: beside the course's own, so that neither waits for the other.
+    fn target(&self) -> PathBuf {
         course_target().join("work")
     }
 
@@ -85,6 +82,17 @@ impl Workspace {
     /// The exercises that the student has files for.
     pub fn started(&self) -> Vec<Entry> {
         entries().into_iter().filter(|entry| self.is_started(entry)).collect()
+    }
+
+    /// A number for what stands in the files of these exercises and in their program.
+    pub fn contents(&self, started: &[Entry]) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        for entry in started {
+            // Whoever compiles a file that cannot be read says so.
+            let text = fs::read(self.path(entry)).ok();
+            (entry.card.id, text).hash(&mut hasher);
+        }
+        hasher.finish()
     }
 
     /// When an exercise's file was last written.
@@ -193,9 +201,8 @@ impl Workspace {
         let manifest = root().join("xtask").join("Cargo.toml").display().to_string();
         let target = course_target().display().to_string();
         if !format!("{manifest}{target}").contains(char::is_whitespace) {
-            let command = format!(
-                "run --release --quiet --manifest-path {manifest} --target-dir {target} --"
-            );
+            let command =
+                format!("run --release --manifest-path {manifest} --target-dir {target} --");
             let _ = writeln!(text, "\n[alias]\nxtask = {}", quoted(Path::new(&command)));
         }
         text
@@ -226,8 +233,8 @@ pub fn package(chapter: Chapter) -> String {
     format!("my-{}", chapter.package)
 }
 
-/// Where the course itself is compiled to.
-fn course_target() -> PathBuf {
+/// Where the course itself is compiled to, and the student's programs with it.
+pub fn course_target() -> PathBuf {
     let target =
         env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
     std::path::absolute(&target).unwrap_or(target)
@@ -381,6 +388,15 @@ mod tests {
             lancer_exercise::run(&chapter_1::exercises::COURSE, subject)
         }
         ");
+    }
+
+    #[test]
+    fn every_chapter_has_a_program_that_includes_the_students() {
+        let manifest = fs::read_to_string(root().join("xtask/student/Cargo.toml")).unwrap();
+        for chapter in entries().iter().map(|entry| entry.chapter) {
+            let name = format!("\nname = \"{}\"\n", package(chapter));
+            assert!(manifest.contains(&name), "{name}");
+        }
     }
 
     #[test]
