@@ -10,6 +10,7 @@ use serde_json::Value;
 
 use super::catalogue::{Chapter, Entry};
 use super::process::{Limits, run};
+use super::words::wrapped;
 use super::workspace::{Workspace, course_target, package};
 use crate::repository::root;
 
@@ -146,8 +147,8 @@ impl<'a> Unfit<'a> {
             _ => format!("`{function}` in {file} takes or returns other types than it should"),
         };
         let message = format!(
-            "{}: {problem}\nIt should begin with:\n\n    {}",
-            entry.title(),
+            "{}\nIt should begin with:\n\n    {}",
+            wrapped(&format!("{}: {problem}", entry.title())),
             entry.signature(function)
         );
         Broken { exercise: Some(entry.card.name), message }
@@ -253,8 +254,9 @@ mod tests {
         ] {
             let broken = explained(&[error(code, "/w/chapter-1/src/main.rs", line)]);
             assert_eq!(broken[0].exercise, Some("second"));
-            let end = format!("{says}\nIt should begin with:\n\n    pub fn g(x: f64) -> f64");
-            assert!(broken[0].message.ends_with(&end), "{}", broken[0].message);
+            let end = format!("{says} It should begin with:      pub fn g(x: f64) -> f64");
+            let message = broken[0].message.replace('\n', " ");
+            assert!(message.ends_with(&end), "{message}");
         }
     }
 

@@ -22,7 +22,7 @@ use build::shown;
 use catalogue::{Entry, entries, find};
 use solution::item;
 use student::{Checked, State, Student};
-use words::say_wrapped;
+use words::{say_report, say_wrapped};
 use workspace::Workspace;
 
 /// Exercises: you write the functions of a ray tracer, one at a time, and see what they draw.
@@ -138,7 +138,7 @@ fn open_picture(picture: &Path) {
 }
 
 fn report(checked: &Checked) -> ExitCode {
-    say_wrapped(&checked.text);
+    say_report(&checked.text);
     if checked.passes { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 

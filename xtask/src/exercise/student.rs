@@ -8,6 +8,7 @@ use anyhow::{Context, Result, bail};
 use super::build::{Broken, build, shown};
 use super::catalogue::{Chapter, Entry, entries};
 use super::process::{Answer, ask};
+use super::words::wrapped;
 use super::workspace::{Started, Workspace};
 
 /// Where a student stands with an exercise.
@@ -43,7 +44,9 @@ impl State {
 
 /// What came out of a check.
 pub struct Checked {
-    /// To be read by the student.
+    /// What was checked.
+    pub entry: Entry,
+    /// To be read by the student: wrapped, but for code.
     pub text: String,
     /// Whether the answer is right.
     pub passes: bool,
@@ -184,7 +187,7 @@ impl Student {
         let how = if all { "check-all" } else { "check" };
         let mut checked = self.ask(entry, &[how, name])?;
         if checked.passes {
-            checked.text.push_str(&self.wrong_ones_used(entry)?);
+            checked.text.push_str(&wrapped(&self.wrong_ones_used(entry)?));
         }
         Ok(checked)
     }
@@ -247,7 +250,7 @@ impl Student {
                 if is_crash {
                     text = format!("{}: {}\n{text}", entry.title(), entry.card.title);
                 }
-                Checked { text, passes: is_right }
+                Checked { entry: *entry, text: wrapped(&text), passes: is_right }
             }
             Err(broken) => {
                 let own = broken.iter().find(|broken| broken.exercise == Some(name));
@@ -258,7 +261,7 @@ impl Student {
                     ),
                     (None, other) => other.map(|other| other.message.clone()).unwrap_or_default(),
                 };
-                Checked { text, passes: false }
+                Checked { entry: *entry, text, passes: false }
             }
         })
     }

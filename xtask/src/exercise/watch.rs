@@ -9,7 +9,7 @@ use anyhow::Result;
 use super::catalogue::{Entry, entries};
 use super::keys::Keys;
 use super::student::{State, Student};
-use super::words::say_wrapped;
+use super::words::{say_report, say_wrapped};
 use super::workspace::Workspace;
 use super::{say_next, say_solution};
 use crate::progress;
@@ -24,7 +24,7 @@ const GAP: Duration = Duration::from_secs(2);
 /// If there is nothing to check, or the folder cannot be written.
 pub fn watch(entry: Option<Entry>) -> Result<()> {
     progress::watch_for_interrupt()?;
-    let mut watch = Watch { entry, keys: Keys::listen(), hints: 0 };
+    let mut watch = Watch { entry, last: entry, keys: Keys::listen(), hints: 0 };
     let mut student = Student::open()?;
     student.require_started(entry.as_ref())?;
     while !progress::is_interrupted() {
@@ -45,16 +45,23 @@ pub fn watch(entry: Option<Entry>) -> Result<()> {
 
 /// What is watched, and how far the student has asked.
 struct Watch {
+    /// The one that is checked; without one, the first begun that does not pass.
     entry: Option<Entry>,
+    /// The one that was checked, which keys are about.
+    last: Option<Entry>,
     keys: Option<Keys>,
-    /// How many hints they have seen since the last change of exercise.
+    /// How many of its hints have been shown.
     hints: usize,
 }
 
 impl Watch {
     fn check(&mut self, student: &mut Student) -> Result<()> {
         let checked = student.check(self.entry, false)?;
-        say_wrapped(&checked.text);
+        say_report(&checked.text);
+        if self.last.replace(checked.entry).is_none_or(|last| last.card.id != checked.entry.card.id)
+        {
+            self.hints = 0;
+        }
         if checked.passes {
             let next = student.first_not_passing()?;
             match (&next, &self.keys) {
@@ -108,33 +115,26 @@ impl Watch {
             super::list(student)?;
             return Ok(false);
         }
-        let next = student.first_not_passing()?;
-        let Some(entry) = self.entry.or(next) else {
-            say!("All exercises pass.");
-            return Ok(false);
-        };
+        if key == 'n' {
+            let Some(next) = student.first_not_passing()? else {
+                say!("All exercises pass.");
+                return Ok(false);
+            };
+            if student.state(&next)? == State::New {
+                say_wrapped(&student.start(&next)?);
+            }
+            self.entry = Some(next);
+            return Ok(true);
+        }
+        let Some(entry) = self.last else { return Ok(false) };
         match key {
-            'n' => match next {
-                Some(next) if student.state(&next)? == State::New => {
-                    say_wrapped(&student.start(&next)?);
-                    self.entry = Some(next);
-                    self.hints = 0;
-                    return Ok(true);
-                }
-                Some(next) => {
-                    self.entry = Some(next);
-                    return Ok(true);
-                }
-                None => say!("All exercises pass."),
-            },
             'h' => {
                 self.hints = (self.hints + 1).min(3);
                 super::say_hint(&entry, self.hints);
             }
-            's' => say_wrapped(&student.show(&entry)?.text),
+            's' => say_report(&student.show(&entry)?.text),
             'o' => say_solution(student, &entry)?,
-            _ if key.is_whitespace() => {}
-            _ => say!("   n next · h hint · s show · o solution · l list · c check · q quit"),
+            _ => {}
         }
         Ok(false)
     }

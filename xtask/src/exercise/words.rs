@@ -7,12 +7,17 @@ const GREEN: &str = "\u{1b}[32m";
 const RED: &str = "\u{1b}[31m";
 const PLAIN: &str = "\u{1b}[0m";
 
-/// Prints words, wrapped and coloured.
+/// Prints words, wrapped.
 pub fn say_wrapped(text: &str) {
-    say!("{}", coloured(&wrapped(text.trim_end())));
+    say!("{}", wrapped(text.trim_end()));
 }
 
-/// Breaks lines between words, each part below the line's own words.
+/// Prints what a check has found, with colours.
+pub fn say_report(text: &str) {
+    say!("{}", coloured(text.trim_end()));
+}
+
+/// Breaks lines between words, each part below the line's own words; a last line that ends stays so.
 pub fn wrapped(text: &str) -> String {
     let wrapped = |line: &str| {
         let indent = " ".repeat(hanging_indent(line));
@@ -23,7 +28,8 @@ pub fn wrapped(text: &str) -> String {
             .word_splitter(textwrap::WordSplitter::NoHyphenation);
         wrap(line, options).join("\n")
     };
-    text.lines().map(wrapped).collect::<Vec<_>>().join("\n")
+    let lines: Vec<String> = text.lines().map(wrapped).collect();
+    lines.join("\n") + if text.ends_with('\n') { "\n" } else { "" }
 }
 
 /// Where a line's words begin: after its spaces, its mark and, in a row of two columns, the first of them.
@@ -39,7 +45,7 @@ fn hanging_indent(line: &str) -> usize {
 }
 
 /// Green for what is right, red for what is not. Whoever prints leaves the colours out where there are none.
-pub fn coloured(text: &str) -> String {
+fn coloured(text: &str) -> String {
     text.replace('✓', &format!("{GREEN}✓{PLAIN}")).replace('✗', &format!("{RED}✗{PLAIN}"))
 }
 
