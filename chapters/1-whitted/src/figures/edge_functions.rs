@@ -47,7 +47,7 @@ pub fn make(_: Effort) -> Finished {
     );
     let seen = |origin: DVec3, title: &'static str| {
         Drawing::new([-1.42, -1.6], [1.36, 1.96], 500.0, move |pen| {
-            along_the_ray(pen, origin, title)
+            along_the_ray(pen, origin, title);
         })
     };
     let plate = Plate::new("1.16", "The shear and the signed areas", claim, holds)
