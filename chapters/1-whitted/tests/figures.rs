@@ -429,3 +429,68 @@ fn image_space() {
         }
     }
 }
+
+/// 1.15: by hand, the pixel (2, 1) of 9 × 6 is 2 pixels left of the middle of the film and 1.5 above it, and
+/// a pixel is a sixth of 2 tan 25°.
+#[test]
+fn camera_frame() {
+    let rows = rows(&made("1.15"));
+    assert_eq!(rows.len(), 54);
+    let row = rows.iter().find(|row| (row.number("x"), row.number("y")) == (2.5, 1.5));
+    let pixel = 2.0 * 0.466307658154999 / 6.0;
+    for (axis, wanted) in [("u", -2.0 * pixel), ("v", 1.5 * pixel), ("w", 1.0)] {
+        assert!((row.expect("a row").number(axis) - wanted).abs() < 1e-14, "{axis}");
+    }
+}
+
+/// 1.16, eq:ray-triangle: by hand, the sheared corners are (−1, −0.7), (−0.1, 1) and (1, −0.4), and the other ray
+/// starts (0.8, 0.75) from there.
+#[test]
+fn edge_functions() {
+    let rows = rows(&made("1.16"));
+    let wanted = [("inside", [0.96, 1.1, 1.07]), ("outside", [-0.985, 2.36, 1.755])];
+    for (row, (ray, areas)) in rows.iter().zip(wanted) {
+        assert_eq!(row.text("ray"), ray);
+        for (name, area) in ["e_a", "e_b", "e_c"].into_iter().zip(areas) {
+            assert!((row.number(name) - area).abs() < 1e-14, "{ray} {name}");
+        }
+    }
+    assert!((rows[0].number("t") - 5.46 / 3.13).abs() < 1e-14);
+}
+
+/// 1.17, eq:local: the cosines of the angles drawn, and no light from behind.
+#[test]
+fn directions() {
+    let rows = rows(&made("1.17"));
+    let cosine = |degrees: f64| degrees.to_radians().cos();
+    let radiance = 0.5 * cosine(35.0) + 0.5 * cosine(38.0).powi(10);
+    let wanted =
+        [[cosine(35.0), cosine(38.0), cosine(19.0), radiance], [-0.8, 0.352, f64::NAN, 0.0]];
+    for (row, wanted) in rows.iter().zip(wanted) {
+        for (name, wanted) in ["n_l", "r_v", "n_h", "radiance"].into_iter().zip(wanted) {
+            let apart = (row.number(name) - wanted).abs();
+            assert!(wanted.is_nan() || apart < 1e-14, "{row:?} {name}");
+        }
+    }
+    assert_eq!(rows.len(), 2);
+}
+
+/// 1.18, eq:descartes: n sin θ is the same in air, glass and water; none leaves glass at 55°.
+#[test]
+fn refraction() {
+    let rows = rows(&made("1.18"));
+    let sine = 50.0_f64.to_radians().sin();
+    let wanted = [
+        ("air", "glass", 1.5, sine / 1.5),
+        ("glass", "air", 1.0 / 1.5, f64::NAN),
+        ("glass", "water", 1.33 / 1.5, sine / 1.33),
+        ("air", "water", 1.33, sine / 1.33),
+    ];
+    assert_eq!(rows.len(), wanted.len());
+    for (row, (from, to, index, sine)) in rows.iter().zip(wanted) {
+        assert_eq!((row.text("from"), row.text("to")), (from, to));
+        assert!((row.number("relative_index") - index).abs() < 1e-15);
+        let out = row.number("degrees_out").to_radians().sin();
+        assert!((out - sine).abs() < 1e-14 || out.is_nan() && sine.is_nan(), "{row:?}");
+    }
+}

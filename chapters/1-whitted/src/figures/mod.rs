@@ -2,9 +2,12 @@
 
 pub(crate) mod acne;
 mod aliasing;
+mod camera_frame;
 mod depth;
 mod descartes;
 mod diffuse;
+mod directions;
+mod edge_functions;
 mod exponent;
 mod image_space;
 mod indirect;
@@ -13,6 +16,7 @@ mod local_model;
 mod pruning;
 pub(crate) mod quadratic;
 mod ray_tree;
+mod refraction;
 mod safety;
 mod slab;
 mod vanishing;
@@ -22,17 +26,18 @@ mod where_time_goes;
 
 use std::ops::AddAssign;
 
+use glam::DVec3;
 use lancer_accel::ObvhsBvh2;
 use lancer_core::image::ImageSize;
 use lancer_core::render::Rendering;
 use lancer_core::sampling::PixelSampling;
 use lancer_core::scene::Scene;
 use lancer_core::world::World;
-use lancer_figure::Figure;
+use lancer_figure::{Figure, Point};
 use lancer_lesson::picture::picture;
 use lancer_whitted::{RayCounts, Recorder, Settings, Whitted};
 
-/// All figures, in the lesson's order.
+/// All figures, by number: the numerics, the course's plates, and the drawings of its geometry.
 pub const FIGURES: &[Figure] = &[
     Figure { id: "0.1", name: "quadratic", make: quadratic::make },
     Figure { id: "0.2", name: "acne", make: acne::make },
@@ -53,6 +58,10 @@ pub const FIGURES: &[Figure] = &[
     Figure { id: "1.12", name: "vanishing", make: vanishing::make },
     Figure { id: "1.13", name: "where-time-goes", make: where_time_goes::make },
     Figure { id: "1.14", name: "image-space", make: image_space::make },
+    Figure { id: "1.15", name: "camera-frame", make: camera_frame::make },
+    Figure { id: "1.16", name: "edge-functions", make: edge_functions::make },
+    Figure { id: "1.17", name: "directions", make: directions::make },
+    Figure { id: "1.18", name: "refraction", make: refraction::make },
 ];
 
 /// Whitted's method over a scene; `counts` is anything that follows the recursion.
@@ -70,4 +79,15 @@ fn trace_picture<C: Recorder + Default + Send + AddAssign>(
 /// Whitted's method and its rays, one sample in the centre of each pixel.
 fn whitted_picture(scene: &Scene, settings: Settings, size: ImageSize) -> Rendering<RayCounts> {
     trace_picture(scene, settings, size, PixelSampling::CENTER)
+}
+
+/// A direction in the plane of a drawing, whose z is 0.
+fn flat(v: DVec3) -> Point {
+    [v.x, v.y]
+}
+
+/// A direction in that plane, turned by `degrees` counter-clockwise.
+fn turned(v: DVec3, degrees: f64) -> DVec3 {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    DVec3::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y, 0.0)
 }
