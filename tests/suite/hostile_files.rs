@@ -10,7 +10,7 @@ use lancer_core::image::{self, Image, ImageSize, save};
 use lancer_core::render::{Control, render_pixels};
 use lancer_core::sampling::{Pattern, PixelSampling, Sample};
 use lancer_core::scene::Scene;
-use lancer_core::scene::load::load;
+use lancer_core::scene::load::{UNNAMED, WarningKind, load};
 use lancer_core::world::World;
 use lancer_whitted::{RayCounts, Settings, Whitted};
 use tempfile::tempdir;
@@ -192,6 +192,28 @@ fn assert_both_ways(tally: &Tally) {
 #[test]
 fn mutated_scenes_are_drawn_or_refused() {
     assert_both_ways(&read_mutated_scenes(3000, 1999));
+}
+
+/// A library in the folder above, which is there, by every path that leads to it.
+#[test]
+fn no_library_outside_the_folder_is_read() {
+    let outer = tempdir().unwrap();
+    let inner = outer.path().join("inner");
+    fs::create_dir(&inner).unwrap();
+    let secret = outer.path().join("secret.mtl");
+    fs::write(&secret, "newmtl m\nKd 1 0 0\n").unwrap();
+    let absolute = secret.display().to_string();
+    let paths =
+        ["../secret.mtl", "..\\secret.mtl", "x/../../secret.mtl", "./../secret.mtl", &absolute];
+    for path in paths {
+        let text = format!("mtllib {path}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
+        fs::write(inner.join("a.obj"), text).unwrap();
+        let loaded = load(&inner.join("a.obj")).unwrap();
+        assert_eq!(loaded.material_names, [UNNAMED], "{path}");
+        assert_eq!(loaded.warnings[0].kind, WarningKind::MissingLibrary, "{path}");
+    }
+    fs::copy(secret, inner.join("secret.mtl")).unwrap();
+    assert_eq!(load(&inner.join("a.obj")).unwrap().material_names, ["m"]);
 }
 
 #[test]

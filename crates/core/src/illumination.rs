@@ -78,6 +78,9 @@ pub struct Reflectance {
 /// even power of a negative R·V would light the wrong side. [`lit`] is the sum, whose Iᵢ come in as
 /// [`Arriving`].
 ///
+/// OBJ files and many programs use (N·H)^Ns instead, H half-way between L and V; [`load`](crate::scene::load) says how
+/// their exponents become n.
+///
 /// Slide « Modèle Local ». (The slide's sum runs from 0 to nbLum, one light too many.)
 #[doc(alias = "eq:local")]
 #[doc(alias = "modèle local")]

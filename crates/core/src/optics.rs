@@ -69,7 +69,8 @@ pub fn refract(incident: DVec3, n: DVec3, n1: f64, n2: f64) -> Option<DVec3> {
 }
 
 /// n₁ and n₂ of `eq:descartes`, before and behind a surface that a ray meets along `incident`: the outside, where
-/// the geometric normal points, has the index 1.
+/// the geometric normal points, has the index 1. Only their quotient counts, so that a material's index is that of the
+/// inside over that of the outside: no stack of the media around a ray is kept.
 #[inline]
 pub fn indices(surface: &SurfacePoint, material: &Material, incident: DVec3) -> [f64; 2] {
     if surface.geometric_normal.dot(incident) < 0.0 {

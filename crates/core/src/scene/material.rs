@@ -15,7 +15,7 @@ pub struct MaterialId(pub u32);
 /// | n     | `shininess`       | `eq:local`, the exponent of the highlight  |
 /// | k_s   | `k_s`             | `eq:recursion`, the share of the mirror ray |
 /// | k_t   | `k_t`             | `eq:recursion`, the share of the refracted ray |
-/// | n₂    | `refractive_index`| `eq:descartes`, inside the closed surface  |
+/// | n₂/n₁ | `refractive_index`| `eq:descartes`, inside the closed surface over what surrounds it |
 /// | ε     | `emission`        | added to what leaves the surface           |
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
@@ -23,13 +23,14 @@ pub struct Material {
     pub rho_d: Pigment,
     /// Weight of the highlight, per channel.
     pub rho_s: Rgb,
-    /// Exponent of the highlight, at least 0.
+    /// Exponent n of the highlight (R·V)ⁿ, at least 0. Below 1 the highlight ends in an edge.
     pub shininess: f64,
     /// Share of the mirror ray, per channel.
     pub k_s: Rgb,
     /// Share of the refracted ray, per channel.
     pub k_t: Rgb,
-    /// Refractive index of the inside; the outside is 1.
+    /// Refractive index of the inside, relative to what surrounds the surface: the outside is 1. Water (1.33) in
+    /// glass (1.5) has 1.33/1.5.
     pub refractive_index: f64,
     /// Radiance emitted from the outside. A face that emits is an area light.
     pub emission: Rgb,
@@ -53,12 +54,21 @@ impl Material {
     /// largest: ρ_d + 2 ρ_s/(n + 1) + k_s + k_t. The second term is the highlight's, (R·V)ⁿ over a hemisphere,
     /// 2π/(n + 1), over the π of a matte surface.
     pub fn largest_albedo(&self) -> f64 {
-        let rho_d = match self.rho_d {
-            Pigment::Solid(color) => color,
-            Pigment::Checker { even, odd, .. } => even.max(odd),
-        };
         let highlight = 2.0 * self.rho_s / (self.shininess + 1.0);
-        (rho_d + highlight + self.k_s + self.k_t).max_element()
+        (self.rho_d.brightest() + highlight + self.k_s + self.k_t).max_element()
+    }
+
+    /// Whether nothing of the surface is seen: it sends no light, and all light passes straight through it.
+    pub fn is_invisible(&self) -> bool {
+        let Self { rho_d, rho_s, shininess: _, k_s, k_t, refractive_index, emission } = *self;
+        let sends_nothing =
+            [rho_s, k_s, emission, rho_d.brightest()].iter().all(|c| *c == Rgb::ZERO);
+        sends_nothing && k_t == Rgb::ONE && refractive_index == 1.0
+    }
+
+    /// Whether light changes its direction where it passes the surface.
+    pub fn refracts(&self) -> bool {
+        self.k_t != Rgb::ZERO && self.refractive_index != 1.0
     }
 
     /// Whether the material emits, so that a face of it is an area light.
@@ -84,6 +94,14 @@ pub enum Pigment {
 }
 
 impl Pigment {
+    /// The largest value of each channel.
+    fn brightest(&self) -> Rgb {
+        match *self {
+            Self::Solid(color) => color,
+            Self::Checker { even, odd, .. } => even.max(odd),
+        }
+    }
+
     /// The colour at `position` of a surface with unit normal `n` (either sense).
     ///
     /// The checker ignores the coordinate along the largest component of `n`: on a floor y = 0 that

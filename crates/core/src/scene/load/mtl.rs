@@ -2,12 +2,12 @@ use std::collections::HashMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::check::{Problem, Range, beside, excerpt, in_range};
+use super::check::beside;
 use super::clean::Lines;
+use super::definition::Definition;
 use super::report::{LoadError, WarningKind, Warnings};
 use super::{DEFAULT_GREY, Open};
-use crate::Rgb;
-use crate::scene::{Material, MaterialId, Pigment};
+use crate::scene::{Material, MaterialId};
 
 /// The materials of all libraries of one OBJ file.
 ///
@@ -15,15 +15,36 @@ use crate::scene::{Material, MaterialId, Pigment};
 /// of one name.
 #[derive(Default)]
 pub(super) struct Library {
-    materials: Vec<Material>,
-    names: HashMap<String, (MaterialId, String)>,
+    entries: Vec<Entry>,
+    names: HashMap<String, MaterialId>,
+    /// Names that end before a comment, of the first material of each.
+    bare_names: HashMap<String, MaterialId>,
+}
+
+struct Entry {
+    name: String,
+    /// The file it stands in, and the line of its `newmtl`.
+    file: String,
+    line: usize,
+    definition: Definition,
+}
+
+/// What a statement of a library belongs to.
+enum Current {
+    Nothing,
+    /// A material without a name, or with one that is taken.
+    LeftOut,
+    Last,
 }
 
 impl Library {
     /// The materials of the libraries that the OBJ file `model` names at the given lines.
     ///
+    /// Nothing outside the model's folder is opened: of a library elsewhere, such as one named by the path of
+    /// another machine, the file of that name beside the model is read.
+    ///
     /// # Errors
-    /// When a library is outside the model's folder, or its content is wrong.
+    /// When a library that is there cannot be read.
     pub fn of_model(
         model: &Path,
         names: &[(String, usize)],
@@ -35,47 +56,74 @@ impl Library {
         let folder = model.parent().unwrap_or(Path::new(""));
         let mut paths: Vec<PathBuf> = Vec::new();
         for (name, line) in names {
-            let place = |name| {
-                beside(folder, "mtllib", name)
-                    .map_err(|(problem, cure)| LoadError::at(&file, *line, problem, cure))
-            };
-            // One name with spaces, or several names.
-            let whole = place(name)?;
-            let words = name.split_whitespace();
-            let candidates = if words.clone().count() > 1 && open(&whole).is_err() {
-                words.map(place).collect::<Result<_, _>>()?
-            } else {
-                vec![whole]
-            };
-            for path in candidates {
-                if paths.contains(&path) {
-                    continue;
+            for found in find_files(folder, name, open) {
+                let (path, text, findings) = match found {
+                    Ok(found) => found,
+                    Err(finding) => {
+                        warnings.add(&file, *line, finding);
+                        continue;
+                    }
+                };
+                if let Some(finding) = findings {
+                    warnings.add(&file, *line, finding);
                 }
-                match open(&path) {
-                    Ok(text) => library.read(&path.display().to_string(), text, warnings)?,
-                    Err(_) => warnings.add(&file, *line, WarningKind::MissingLibrary),
+                if !paths.contains(&path) {
+                    library.read(&path.display().to_string(), text, warnings)?;
+                    paths.push(path);
                 }
-                paths.push(path);
             }
         }
         Ok(library)
     }
 
-    pub fn find(&self, name: &str) -> Option<MaterialId> {
-        self.names.get(name).map(|(id, _)| *id)
+    /// The material that `name` means after `usemtl`, and what there is to say about it.
+    pub fn find(&self, name: &str) -> (Option<MaterialId>, Option<WarningKind>) {
+        if let Some(&id) = self.names.get(name) {
+            return (Some(id), None);
+        }
+        let bare = without_comment(name);
+        if bare.is_empty() {
+            return (None, Some(WarningKind::Nameless("usemtl")));
+        }
+        // `Material #27` does not mean `Material #25`.
+        let names = if bare == name { &self.bare_names } else { &self.names };
+        match names.get(bare) {
+            Some(&id) => (Some(id), Some(WarningKind::CommentAfterName)),
+            None => (None, Some(WarningKind::UnknownMaterial)),
+        }
     }
 
     /// The materials with their names, in the order in which they are numbered.
-    pub fn into_named(self) -> Vec<(String, Material)> {
-        let mut names: Vec<_> = self.names.into_iter().map(|(name, (id, _))| (id, name)).collect();
-        names.sort_unstable();
-        names.into_iter().map(|(_, name)| name).zip(self.materials).collect()
+    ///
+    /// # Errors
+    /// When one of the `used` materials has a wrong value. Others become light grey.
+    pub fn into_named(
+        self,
+        used: &[Option<MaterialId>],
+        warnings: &mut Warnings,
+    ) -> Result<Vec<(String, Material)>, LoadError> {
+        let mut is_used = vec![false; self.entries.len()];
+        used.iter().flatten().for_each(|id| is_used[id.0 as usize] = true);
+        let mut named = Vec::with_capacity(self.entries.len());
+        for (entry, is_used) in self.entries.into_iter().zip(is_used) {
+            let material = match entry.definition.material() {
+                Err((line, (problem, cure))) if is_used => {
+                    return Err(LoadError::at(&entry.file, line, problem, cure));
+                }
+                material => material.unwrap_or(Material::matte(DEFAULT_GREY)),
+            };
+            for line in entry.definition.wrong_lines() {
+                warnings.add(&entry.file, line, WarningKind::UnneededValue);
+            }
+            named.push((entry.name, material));
+        }
+        Ok(named)
     }
 
     /// Adds the materials of an MTL file.
     ///
     /// # Errors
-    /// When a value is missing, not a number or out of range, or a name is used twice.
+    /// When it cannot be read as text.
     fn read(
         &mut self,
         file: &str,
@@ -83,24 +131,34 @@ impl Library {
         warnings: &mut Warnings,
     ) -> Result<(), LoadError> {
         let mut lines = Lines::new(file, text)?;
-        let mut current: Option<Definition> = None;
+        let first = self.entries.len();
+        let mut current = Current::Nothing;
         while let Some((number, line)) = lines.next()? {
             let statement = line.trim();
             let (keyword, rest) =
                 statement.split_once(char::is_whitespace).unwrap_or((statement, ""));
-            let invalid = |(problem, cure): Problem| LoadError::at(file, number, problem, cure);
             match keyword {
                 "" | "Ka" => {}
                 _ if keyword.starts_with('#') => {}
                 "newmtl" => {
-                    self.materials.extend(current.take().map(|done| done.material()));
-                    self.define(rest.trim(), file, number).map_err(invalid)?;
-                    current = Some(Definition::default());
+                    current = match self.define(rest.trim(), file, number) {
+                        Ok(()) => Current::Last,
+                        Err(finding) => {
+                            warnings.add(file, number, finding);
+                            Current::LeftOut
+                        }
+                    };
                 }
-                "Kd" | "Ks" | "Ke" | "Tf" | "Ns" | "Ni" | "d" | "Tr" | "illum" => {
+                _ if Definition::KEYWORDS.contains(&keyword) => {
                     let words = rest.split('#').next().unwrap_or_default();
-                    let material = current.as_mut().ok_or_else(|| invalid(outside(keyword)))?;
-                    material.set(keyword, words).map_err(invalid)?;
+                    match (&current, self.entries.last_mut()) {
+                        (Current::Last, Some(Entry { definition, .. })) => {
+                            let warn = &mut |kind| warnings.add(file, number, kind);
+                            definition.set(keyword, words, number, warn);
+                        }
+                        (Current::LeftOut, _) => {}
+                        _ => warnings.add(file, number, WarningKind::BeforeMaterial),
+                    }
                 }
                 _ => {
                     let ignored = IGNORED.iter().find(|&&ignored| ignored == keyword);
@@ -110,22 +168,82 @@ impl Library {
                 }
             }
         }
-        self.materials.extend(current.map(|done| done.material()));
+        // Many exporters have written `Tr 1`, and some `d 0`, for what is opaque.
+        let added = &mut self.entries[first..];
+        let is_invisible =
+            |entry: &Entry| entry.definition.material().is_ok_and(|m| m.is_invisible());
+        if !added.is_empty() && added.iter().all(is_invisible) {
+            warnings.add(file, added[0].line, WarningKind::InvisibleLibrary);
+            added.iter_mut().for_each(|entry| entry.definition.exchange_opacity());
+        }
         Ok(())
     }
 
-    fn define(&mut self, name: &str, file: &str, line: usize) -> Result<(), Problem> {
+    /// Adds a material without statements; the first of a name counts.
+    fn define(&mut self, name: &str, file: &str, line: usize) -> Result<(), WarningKind> {
         if name.is_empty() {
-            return Err(("newmtl without a name".to_owned(), "name the material"));
+            return Err(WarningKind::Nameless("newmtl"));
         }
-        if let Some((_, place)) = self.names.get(name) {
-            let problem = format!("material `{}` is already defined at {place}", excerpt(name));
-            return Err((problem, "rename one of the two"));
+        if self.names.contains_key(name) {
+            return Err(WarningKind::DuplicateMaterial);
         }
-        let id = MaterialId(self.materials.len() as u32);
-        self.names.insert(name.to_owned(), (id, format!("{file}:{line}")));
+        let id = MaterialId(self.entries.len() as u32);
+        self.names.insert(name.to_owned(), id);
+        let bare = without_comment(name);
+        if bare != name {
+            self.bare_names.entry(bare.to_owned()).or_insert(id);
+        }
+        self.entries.push(Entry {
+            name: name.to_owned(),
+            file: file.to_owned(),
+            line,
+            definition: Definition::default(),
+        });
         Ok(())
     }
+}
+
+/// A library that is there, with what to say about where it was found; or why there is none.
+type Found = Result<(PathBuf, Box<dyn Read>, Option<WarningKind>), WarningKind>;
+
+/// The files that `name` means after `mtllib`: one name, which may hold spaces and end before a comment, or several.
+fn find_files(folder: &Path, name: &str, open: Open<'_>) -> Vec<Found> {
+    let exact = |name: &str| {
+        let path = beside(folder, "mtllib", name).ok()?;
+        open(&path).ok().map(|text| (path, text))
+    };
+    let beside_model = |name: &str| exact(name.rsplit(['/', '\\', ':']).next().unwrap_or_default());
+    let anywhere = |name: &str| {
+        let here = exact(name).map(|(path, text)| (path, text, None));
+        here.or_else(|| {
+            let (path, text) = beside_model(name)?;
+            Some((path, text, Some(WarningKind::LibraryElsewhere)))
+        })
+    };
+    if let Some((path, text)) = exact(name) {
+        return vec![Ok((path, text, None))];
+    }
+    let bare = without_comment(name);
+    if bare.is_empty() {
+        return vec![Err(WarningKind::Nameless("mtllib"))];
+    }
+    let comment = (bare != name).then_some(Err(WarningKind::CommentAfterName));
+    let words: Vec<&str> = bare.split_whitespace().collect();
+    let is_library = |word: &&str| word.to_ascii_lowercase().ends_with(".mtl");
+    let several = words.len() > 1 && exact(bare).is_none() && words.iter().all(is_library);
+    let one = if several { None } else { anywhere(bare) };
+    let files: Vec<Found> = match one {
+        Some(one) => vec![Ok(one)],
+        None => words.iter().map(|w| anywhere(w).ok_or(WarningKind::MissingLibrary)).collect(),
+    };
+    comment.into_iter().chain(files).collect()
+}
+
+/// A name up to the `#` that begins a comment: the first one, or one after a space.
+fn without_comment(name: &str) -> &str {
+    let begins =
+        |&(at, _): &(usize, &str)| name[..at].chars().next_back().is_none_or(char::is_whitespace);
+    name.match_indices('#').find(begins).map_or(name, |(at, _)| name[..at].trim_end())
 }
 
 /// Statements about effects that are not in the slides: textures and the later "PBR" extension.
@@ -158,118 +276,3 @@ const IGNORED: [&str; 27] = [
     "aniso",
     "anisor",
 ];
-
-fn outside(keyword: &str) -> Problem {
-    (format!("`{keyword}` before the first newmtl"), "start the material with `newmtl NAME`")
-}
-
-/// What an MTL file says about one material.
-#[derive(Default)]
-struct Definition {
-    kd: Option<Rgb>,
-    ks: Option<Rgb>,
-    ke: Option<Rgb>,
-    tf: Option<Rgb>,
-    ns: Option<f64>,
-    ni: Option<f64>,
-    /// `d`, and 1 − `Tr`: some exporters write both and mean `d`.
-    d: Option<f64>,
-    tr: Option<f64>,
-    illum: Option<f64>,
-}
-
-impl Definition {
-    fn set(&mut self, keyword: &str, words: &str) -> Result<(), Problem> {
-        let number = |range| in_range(keyword, scalar(keyword, words)?, range);
-        let color = |range| {
-            let color = rgb(keyword, words)?;
-            for channel in color.to_array() {
-                in_range(keyword, channel, range)?;
-            }
-            Ok(color)
-        };
-        match keyword {
-            "Kd" => self.kd = Some(color(Range::Share)?),
-            "Ks" => self.ks = Some(color(Range::Share)?),
-            "Tf" => self.tf = Some(color(Range::Share)?),
-            "Ke" => self.ke = Some(color(Range::Radiance)?),
-            "Ns" => self.ns = Some(number(Range::NotNegative)?),
-            "Ni" => self.ni = Some(number(Range::Index)?),
-            "d" => self.d = Some(number(Range::Share)?),
-            "Tr" => self.tr = Some(number(Range::Share)?),
-            _ => self.illum = Some(number(Range::Illum)?),
-        }
-        Ok(())
-    }
-
-    /// The material in the course's terms, after the formulas of the MTL specification:
-    ///
-    /// | `illum`    | specification                        | here                                 |
-    /// |------------|--------------------------------------|--------------------------------------|
-    /// | 0, 1       | Kd, no highlight                     | ρ_d = Kd                             |
-    /// | 2, 8, 10   | and highlight Ks (Σ(H·Hⱼ)^Ns Iⱼ)     | and ρ_s = Ks, n = Ns                 |
-    /// | 3, 5       | and mirror Ks (Σ … + I_r)            | and k_s = Ks                         |
-    /// | 4, 9       | as 3, as 2; *glass*, not refracting  | k_t = (1 − d) Tf, index 1            |
-    /// | 6, 7       | Ks (Σ … + I_r) + (1 − Ks) Tf I_t     | k_s = Ks, k_t = (1 − Ks) Tf, index Ni |
-    ///
-    /// `d` mixes the surface with what is behind it: every other term is multiplied by d and, up to
-    /// `illum` 5, k_t is (1 − d) Tf with index 1, since only 6 and 7 refract and exporters write
-    /// `Ni` everywhere. Glass keeps its highlight and mirror at full strength. The Fresnel factors
-    /// of 5 and 7 are left out. `Ka` is not read: the course's ambient term is ρ̄ I_a.
-    /// Without `illum` a material is of kind 2; without `Kd` it is light grey, without `Ns` its
-    /// exponent is 1.
-    fn material(&self) -> Material {
-        let opacity = self.d.or(self.tr.map(|tr| 1.0 - tr)).unwrap_or(1.0);
-        let kd = self.kd.unwrap_or(DEFAULT_GREY);
-        let ks = self.ks.unwrap_or(Rgb::ZERO);
-        let tf = self.tf.unwrap_or(Rgb::ONE);
-        let illum = self.illum.map_or(2, |illum| illum as u8);
-
-        let refracts = matches!(illum, 6 | 7);
-        let kept = if refracts || matches!(illum, 4 | 9) { 1.0 } else { opacity };
-        let shines = illum >= 2;
-        let mirrors = matches!(illum, 3..=7);
-        Material {
-            rho_d: Pigment::Solid(opacity * kd),
-            rho_s: if shines { kept * ks } else { Rgb::ZERO },
-            shininess: self.ns.unwrap_or(1.0),
-            k_s: if mirrors { kept * ks } else { Rgb::ZERO },
-            k_t: if refracts { (Rgb::ONE - ks) * tf } else { (1.0 - opacity) * tf },
-            refractive_index: if refracts { self.ni.unwrap_or(1.0) } else { 1.0 },
-            emission: self.ke.unwrap_or(Rgb::ZERO),
-        }
-    }
-}
-
-fn scalar(keyword: &str, words: &str) -> Result<f64, Problem> {
-    match numbers(keyword, words)?[..] {
-        [value] => Ok(value),
-        _ => Err(wrong_count(keyword, words, "give it one number")),
-    }
-}
-
-/// One number is a grey, as the specification says.
-fn rgb(keyword: &str, words: &str) -> Result<Rgb, Problem> {
-    match numbers(keyword, words)?[..] {
-        [grey] => Ok(Rgb::splat(grey)),
-        [r, g, b] => Ok(Rgb::new(r, g, b)),
-        _ => Err(wrong_count(keyword, words, "give it one number or three")),
-    }
-}
-
-fn numbers(keyword: &str, words: &str) -> Result<Vec<f64>, Problem> {
-    let number = |word: &str| {
-        let problem = || {
-            (
-                format!("{keyword}: `{}` is not a number", excerpt(word)),
-                "write a number, with a decimal point",
-            )
-        };
-        word.parse().map_err(|_| problem())
-    };
-    words.split_whitespace().map(number).collect()
-}
-
-fn wrong_count(keyword: &str, words: &str, cure: &'static str) -> Problem {
-    (format!("{keyword} has {} numbers", words.split_whitespace().count()), cure)
-}

@@ -7,18 +7,29 @@ use super::check::{excerpt, is_in_space, within_limit};
 use super::clean::Lines;
 use super::mtl::Library;
 use super::report::{LoadError, WarningKind, Warnings};
-use super::statements::{Record, Run, Statements};
+use super::statements::{Record, Statements};
 use super::{DEFAULT_GREY, MAX_COORDINATE, MAX_COUNT, Open, UNNAMED};
 use crate::geometry::triangulate;
 use crate::scene::counts::is_zero_area;
 use crate::scene::{Face, FaceId, Material, MaterialId, Mesh, Triangle};
 
-/// Reads an OBJ file and its material libraries; materials come with their names.
+/// Where the materials of an OBJ file come from.
+#[derive(Clone, Copy)]
+pub(super) enum Materials {
+    /// Its libraries.
+    Own,
+    /// The scene file, which gives one for all faces: the libraries are not read.
+    Replaced,
+}
+
+/// Reads an OBJ file and its material libraries; materials come with their names. If they are replaced there are
+/// none, and all faces have the number 0.
 ///
-/// tobj reads the numbers. Everything a line says beyond them (materials, groups, libraries) is
+/// tobj reads positions and the vertices of faces. Everything else (normals, materials, groups, libraries) is
 /// kept from it and recorded, so that it returns one model whose faces share their vertices.
 pub(super) fn read_obj(
     path: &Path,
+    materials: Materials,
     open: Open<'_>,
     warnings: &mut Warnings,
 ) -> Result<(Mesh, Vec<(String, Material)>), LoadError> {
@@ -33,7 +44,7 @@ pub(super) fn read_obj(
         (None, Err(error)) => return Err(source.explain(error, &statements)),
         (None, Ok((models, _))) => models.into_iter().next().map(|m| m.mesh).unwrap_or_default(),
     };
-    let record = statements.record;
+    let mut record = statements.record;
     if model.indices.is_empty() {
         return Err(LoadError::at(
             &file,
@@ -42,37 +53,43 @@ pub(super) fn read_obj(
             "check that this is an OBJ file with `v` and `f` lines",
         ));
     }
-    if !model.vertex_color.is_empty() {
-        warnings.add(&file, None, WarningKind::VertexColors);
-    }
-    let library = Library::of_model(path, &record.libraries, open, warnings)?;
-    let (materials, run_materials) = resolve_materials(&file, library, &record, warnings);
-    let mesh = source.build_mesh(&model, &record.runs, &run_materials, warnings)?;
+    let (materials, run_materials) = match materials {
+        Materials::Own => {
+            let library = Library::of_model(path, &record.libraries, open, warnings)?;
+            resolve_materials(&file, library, &record, warnings)?
+        }
+        Materials::Replaced => (Vec::new(), vec![MaterialId(0); record.runs.len()]),
+    };
+    let mesh = source.build_mesh(&model, &mut record, &run_materials, warnings)?;
     Ok((mesh, materials))
 }
 
 /// The material of each run. Runs without one get a default material at the end of the list.
+///
+/// # Errors
+/// When a material that a face uses has a wrong value.
 fn resolve_materials(
     file: &str,
     library: Library,
     record: &Record,
     warnings: &mut Warnings,
-) -> (Vec<(String, Material)>, Vec<MaterialId>) {
-    let named: Vec<Option<MaterialId>> =
-        record.material_names.iter().map(|(name, _)| library.find(name)).collect();
-    for ((_, line), id) in record.material_names.iter().zip(&named) {
-        if id.is_none() {
-            warnings.add(file, *line, WarningKind::UnknownMaterial);
+) -> Result<(Vec<(String, Material)>, Vec<MaterialId>), LoadError> {
+    let mut resolve = |(name, line): &(String, usize)| {
+        let (id, finding) = library.find(name);
+        if let Some(finding) = finding {
+            warnings.add(file, *line, finding);
         }
-    }
-    let mut materials = library.into_named();
+        id
+    };
+    let named: Vec<Option<MaterialId>> = record.material_names.iter().map(&mut resolve).collect();
     let found: Vec<Option<MaterialId>> =
         record.runs.iter().map(|run| run.material.and_then(|name| named[name])).collect();
+    let mut materials = library.into_named(&found, warnings)?;
     let default = MaterialId(materials.len() as u32);
     if found.contains(&None) {
         materials.push((UNNAMED.to_owned(), Material::matte(DEFAULT_GREY)));
     }
-    (materials, found.into_iter().map(|id| id.unwrap_or(default)).collect())
+    Ok((materials, found.into_iter().map(|id| id.unwrap_or(default)).collect()))
 }
 
 /// An OBJ file that can be read again, to find the line of what turned out wrong.
@@ -88,16 +105,8 @@ impl<'a> Source<'a> {
             .map_err(|reason| LoadError::Unreadable { file: self.file.to_owned(), reason })
     }
 
-    /// tobj's error as ours: it stopped at the line it was given last, or at the end for colours.
+    /// tobj's error as ours: it stopped at the line it was given last.
     fn explain(&self, error: tobj::LoadError, statements: &Statements<'_, '_>) -> LoadError {
-        if error == tobj::LoadError::FaceColorOutOfBounds {
-            let is_grey = |keyword: &str, numbers: &str| {
-                keyword == "v" && numbers.split_whitespace().nth(5).is_none()
-            };
-            let problem = "this vertex has no colour and others have one";
-            let cure = "give every `v` three numbers, or every `v` six";
-            return LoadError::at(self.file, self.find_line(is_grey), problem, cure);
-        }
         let line = excerpt(&statements.line);
         let (problem, cure) = if error == tobj::LoadError::ScalingByZeroError {
             (format!("`{line}` has the weight 0"), "remove the fourth number")
@@ -122,12 +131,12 @@ impl<'a> Source<'a> {
         None
     }
 
-    fn line_of_vector(&self, wanted: &str, is_bad: impl Fn(DVec3) -> bool) -> Option<usize> {
+    fn line_of_vertex(&self, is_bad: impl Fn(DVec3) -> bool) -> Option<usize> {
         self.find_line(|keyword, numbers| {
             let numbers: Vec<f64> =
                 numbers.split_whitespace().map_while(|word| word.parse().ok()).collect();
             let weight = if let [_, _, _, weight] = numbers[..] { weight } else { 1.0 };
-            keyword == wanted && numbers.len() >= 3 && is_bad(DVec3::from_slice(&numbers) / weight)
+            keyword == "v" && numbers.len() >= 3 && is_bad(DVec3::from_slice(&numbers) / weight)
         })
     }
 
@@ -142,7 +151,7 @@ impl<'a> Source<'a> {
     fn build_mesh(
         &self,
         model: &tobj::Mesh,
-        runs: &[Run],
+        record: &mut Record,
         materials: &[MaterialId],
         warnings: &mut Warnings,
     ) -> Result<Mesh, LoadError> {
@@ -151,14 +160,11 @@ impl<'a> Source<'a> {
         if !positions.iter().copied().all(is_in_space) {
             return Err(LoadError::at(
                 self.file,
-                self.line_of_vector("v", |p| !is_in_space(p)),
+                self.line_of_vertex(|p| !is_in_space(p)),
                 format!("a coordinate is not finite, or beyond ±{MAX_COORDINATE:e}"),
                 "correct the number",
             ));
         }
-        let any_smooth = runs.iter().any(|run| run.smooth);
-        let normals = if any_smooth { self.unit_normals(&model.normals)? } else { Vec::new() };
-
         let faces = if model.face_arities.is_empty() {
             model.indices.len() / 3
         } else {
@@ -167,16 +173,19 @@ impl<'a> Source<'a> {
         let triangles = model.indices.len() - 2 * faces;
         within_limit(triangles, "triangles", MAX_COUNT, "split the model")
             .map_err(|(problem, cure)| LoadError::at(self.file, None, problem, cure))?;
-        let mut mesh = Mesh { positions, normals, ..Mesh::default() };
+        let mut mesh = Mesh { positions, ..Mesh::default() };
         mesh.faces.reserve_exact(faces);
         mesh.triangles.reserve_exact(triangles);
-        if any_smooth {
+        let runs = &record.runs;
+        let any_normals = !record.corner_normals.is_empty();
+        if any_normals {
             mesh.smooth.reserve_exact(triangles);
         }
 
         let mut findings = Findings::default();
-        let (mut polygon, mut parts) = (Vec::new(), Vec::new());
-        let (mut start, mut run) = (0, 0);
+        let (mut polygon, mut parts, mut normals) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut start, mut run, mut any_smooth) = (0, 0, false);
+        let mut corner_normals = record.corner_normals.iter();
         for face in 0..faces {
             let end = start + model.face_arities.get(face).map_or(3, |&arity| arity as usize);
             while runs.get(run + 1).is_some_and(|next| next.first_face <= face) {
@@ -187,8 +196,16 @@ impl<'a> Source<'a> {
             polygon.extend(corners.iter().map(|&vertex| mesh.positions[vertex as usize]));
             parts.clear();
             let defects = triangulate(&polygon, &mut parts);
+            normals.clear();
+            if runs[run].with_normals {
+                let named = corner_normals.by_ref().take(corners.len());
+                normals.extend(named.filter_map(|&number| record.normal(number)));
+            }
+            let smooth = runs[run].with_normals && normals.len() == corners.len();
+            any_smooth |= smooth;
             let is_flat = |part: &&[u32; 3]| is_zero_area(part.map(|i| polygon[i as usize]));
             for (kind, count) in [
+                (WarningKind::UnusableNormals, usize::from(runs[run].with_normals && !smooth)),
                 (WarningKind::SelfIntersecting, usize::from(defects.self_intersecting)),
                 (WarningKind::NonPlanar, usize::from(defects.non_planar)),
                 (WarningKind::ZeroArea, parts.iter().filter(is_flat).count()),
@@ -204,38 +221,22 @@ impl<'a> Source<'a> {
                     .iter()
                     .map(|part| Triangle { vertices: part.map(|i| corners[i as usize]), face }),
             );
-            if any_smooth {
-                let corner_normals = |part: &[u32; 3]| {
-                    runs[run].smooth.then(|| part.map(|i| model.normal_indices[start + i as usize]))
-                };
-                mesh.smooth.extend(parts.iter().map(corner_normals));
+            if any_normals {
+                let of_part = |part: &[u32; 3]| smooth.then(|| part.map(|i| normals[i as usize]));
+                mesh.smooth.extend(parts.iter().map(of_part));
             }
             start = end;
         }
         for (kind, face, count) in findings.0 {
             warnings.add_many(self.file, self.line_of_face(face), kind, count);
         }
+        if any_smooth {
+            mesh.normals = std::mem::take(&mut record.normals);
+        } else {
+            mesh.smooth = Vec::new();
+        }
         Ok(mesh)
     }
-
-    fn unit_normals(&self, numbers: &[f64]) -> Result<Vec<DVec3>, LoadError> {
-        numbers.chunks_exact(3).map(DVec3::from_slice).map(unit).collect::<Option<_>>().ok_or_else(
-            || {
-                LoadError::at(
-                    self.file,
-                    self.line_of_vector("vn", |n| unit(n).is_none()),
-                    "a normal is zero or not finite",
-                    "correct it, or leave the normals out for flat faces",
-                )
-            },
-        )
-    }
-}
-
-/// The unit vector of a normal of any finite length but 0; squares of very short and very long ones
-/// would leave the range of numbers.
-fn unit(normal: DVec3) -> Option<DVec3> {
-    (normal / normal.abs().max_element()).try_normalize()
 }
 
 /// Findings about faces: their kind, the first face, how many.

@@ -76,14 +76,41 @@ pub enum WarningKind {
     NotAFace,
     /// Vertex colours of an OBJ; colours come from materials.
     VertexColors,
+    /// `usemtl`, `mtllib` or `newmtl` without a name.
+    Nameless(&'static str),
+    /// The name after `usemtl` or `mtllib`, or that of the material, ends before a comment.
+    CommentAfterName,
     /// A material library that does not exist or cannot be opened.
     MissingLibrary,
+    /// A material library that is not where the model says, or outside its folder; one of the same name beside
+    /// the model was read.
+    LibraryElsewhere,
+    /// A material whose name is taken; the first counts.
+    DuplicateMaterial,
+    /// A statement of a material before the first `newmtl`.
+    BeforeMaterial,
+    /// A colour as a spectral curve or as CIE XYZ; it counts as not given.
+    ForeignColor,
+    /// `d -halo`: a dissolve that depends on the direction.
+    Halo,
+    /// More numbers than the statement has.
+    ExtraNumbers,
+    /// An `Ns` below 0, as Blender wrote it for years.
+    NegativeShininess,
+    /// An `illum` that the specification has not.
+    UnknownIllum,
+    /// A value that cannot be read or is out of range, of which no picture depends.
+    UnneededValue,
+    /// A library all of whose materials would be invisible, because its writer means the opposite by `Tr` or `d`.
+    InvisibleLibrary,
     /// `usemtl` names a material that no library defines.
     UnknownMaterial,
     /// A face with fewer than three corners.
     TooFewCorners,
     /// A face with normals at some of its corners only.
     PartialNormals,
+    /// A face that names a normal that does not exist, or one without a direction.
+    UnusableNormals,
     /// A polygon that crosses itself, so that its area has no meaning.
     SelfIntersecting,
     /// A polygon whose corners are far from any plane.
@@ -100,6 +127,32 @@ pub enum WarningKind {
         /// The share that it sends back, as a decimal fraction.
         sum: String,
     },
+    /// A material of which nothing is seen.
+    Invisible {
+        /// Its name.
+        material: String,
+    },
+    /// A refracting surface with borders: what enters it may never leave it, and the other way round.
+    OpenSurface {
+        /// The name of its material.
+        material: String,
+        /// The edges at which an odd number of triangles meet.
+        edges: usize,
+    },
+    /// A refracting surface whose outside and inside are exchanged from one triangle to the next.
+    MixedWinding {
+        /// The name of its material.
+        material: String,
+        /// The edges along which neighbours run in the same direction.
+        edges: usize,
+    },
+    /// A closed refracting surface whose normals point inwards, and which is no hole in another one.
+    InsideOut {
+        /// The name of its material.
+        material: String,
+        /// Its edges, with those of all others of this material.
+        edges: usize,
+    },
 }
 
 impl fmt::Display for WarningKind {
@@ -109,6 +162,33 @@ impl fmt::Display for WarningKind {
             Self::UnknownStatement => f.write_str("unknown statement ignored"),
             Self::NotAFace => f.write_str("lines, points, curves and surfaces ignored: only faces are drawn"),
             Self::VertexColors => f.write_str("vertex colours ignored: colours come from materials"),
+            Self::Nameless(keyword) => {
+                write!(f, "`{keyword}` without a name; what it should name becomes light grey")
+            }
+            Self::CommentAfterName => f.write_str("the name is taken to end before its ` #`, a comment"),
+            Self::LibraryElsewhere => f.write_str(
+                "material library is not in this file's folder under that path; the one of its name beside this file is read",
+            ),
+            Self::DuplicateMaterial => {
+                f.write_str("a material of this name is defined already; the first one counts")
+            }
+            Self::BeforeMaterial => f.write_str("statement before the first `newmtl` ignored"),
+            Self::ForeignColor => {
+                f.write_str("spectral and xyz colours are ignored: write red, green and blue")
+            }
+            Self::Halo => f.write_str("`d -halo` is read as `d`, the same from all sides"),
+            Self::ExtraNumbers => f.write_str("more numbers than the statement has; the first ones count"),
+            Self::NegativeShininess => f.write_str("a negative `Ns` counts as 0"),
+            Self::UnknownIllum => {
+                f.write_str("`illum` is not a whole number from 0 to 10, and counts as not given")
+            }
+            Self::UnneededValue => {
+                f.write_str("wrong value ignored: no picture of this model depends on it")
+            }
+            Self::InvisibleLibrary => f.write_str(
+                "every material of this library would be invisible; `Tr` and `d` are read the other way round, \
+                 as some exporters write them",
+            ),
             Self::MissingLibrary => {
                 f.write_str("material library cannot be opened; its materials become light grey")
             }
@@ -117,6 +197,9 @@ impl fmt::Display for WarningKind {
             }
             Self::TooFewCorners => f.write_str("face with fewer than 3 corners left out"),
             Self::PartialNormals => f.write_str("face with normals at some corners only is drawn flat"),
+            Self::UnusableNormals => f.write_str(
+                "face with a normal that does not exist, is zero or not finite is drawn flat",
+            ),
             Self::SelfIntersecting => f.write_str("polygon crosses itself; split it to get the right area"),
             Self::NonPlanar => f.write_str("polygon is not planar; split it into triangles"),
             Self::ZeroArea => f.write_str("triangle of zero area (kept)"),
@@ -124,6 +207,29 @@ impl fmt::Display for WarningKind {
                 f,
                 "material `{}` sends back {sum} times the light that it receives, by ρ_d + 2 ρ_s/(n + 1) + k_s + k_t; \
                  keep the sum at 1 or below",
+                printable(material)
+            ),
+            Self::Invisible { material } => write!(
+                f,
+                "material `{}` is invisible: light passes as if it were not there; check `d` and `Tr`, or `k_t`",
+                printable(material)
+            ),
+            Self::OpenSurface { material, edges } => write!(
+                f,
+                "the refracting surface `{}` is open, at {edges} of its edges: what enters may never leave; \
+                 close it, or give it the refractive index 1",
+                printable(material)
+            ),
+            Self::MixedWinding { material, edges } => write!(
+                f,
+                "the refracting surface `{}` exchanges inside and outside, at {edges} of its edges; \
+                 turn its faces counter-clockwise seen from outside",
+                printable(material)
+            ),
+            Self::InsideOut { material, edges } => write!(
+                f,
+                "the refracting surface `{}` is inside out, at all of its {edges} edges; \
+                 turn its faces counter-clockwise seen from outside",
                 printable(material)
             ),
             Self::NoLight => f.write_str(

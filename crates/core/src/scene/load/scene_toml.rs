@@ -252,8 +252,9 @@ impl Source<'_> {
         let transform = self.transform(table)?;
         let path = beside(folder, "obj", table.obj.get_ref())
             .map_err(|problem| self.error(table.obj.span(), problem))?;
-        let (mut mesh, materials) =
-            obj::read_obj(&path, open, warnings).map_err(|error| match error {
+        let of_file = material.map_or(obj::Materials::Own, |_| obj::Materials::Replaced);
+        let (mesh, materials) =
+            obj::read_obj(&path, of_file, open, warnings).map_err(|error| match error {
                 LoadError::Unreadable { reason, .. } => {
                     let problem = format!("obj `{}`: {reason}", excerpt(table.obj.get_ref()));
                     let cure = "mesh files are looked for from the scene's folder";
@@ -269,23 +270,9 @@ impl Source<'_> {
         for &p in &mesh.positions {
             check_point("a vertex", transform.transform_point3(p)).map_err(invalid)?;
         }
-        let mut names = Vec::new();
-        let first_material = match material {
-            Some(MaterialId(material)) => {
-                for face in &mut mesh.faces {
-                    face.material = MaterialId(0);
-                }
-                material
-            }
-            None => {
-                let first = scene.materials.len() as u32;
-                for (name, material) in materials {
-                    names.push(name);
-                    scene.materials.push(material);
-                }
-                first
-            }
-        };
+        let first_material = material.map_or(scene.materials.len() as u32, |id| id.0);
+        let (names, materials): (Vec<_>, Vec<_>) = materials.into_iter().unzip();
+        scene.materials.extend(materials);
         scene.mesh.append(&mesh, transform, first_material);
         Ok(names)
     }

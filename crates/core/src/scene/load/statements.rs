@@ -1,6 +1,8 @@
 use std::collections::HashMap;
 use std::io::{self, BufRead, Read};
 
+use glam::DVec3;
+
 use super::check::{Problem, excerpt, within_limit};
 use super::clean::Lines;
 use super::report::{LoadError, WarningKind, Warnings};
@@ -11,27 +13,33 @@ pub(super) struct Run {
     pub first_face: usize,
     /// Index into [`Record::material_names`]; `None` before any `usemtl`.
     pub material: Option<usize>,
-    pub smooth: bool,
+    /// Whether all corners name a normal, which stands in [`Record::corner_normals`].
+    pub with_normals: bool,
 }
 
 /// What the lines say beyond the numbers that tobj reads.
 #[derive(Default)]
 pub(super) struct Record {
     vertices: usize,
-    normals: usize,
     faces: usize,
     pub runs: Vec<Run>,
+    /// Of the `vn` lines those that have a direction, of unit length.
+    pub normals: Vec<DVec3>,
+    /// For each `vn` line, from the first, its index into `normals`.
+    normal_indices: Vec<Option<u32>>,
+    /// The numbers of the `vn` lines that corners name, of the faces of all runs with normals. They may follow
+    /// the faces that use them, or never come.
+    pub corner_normals: Vec<u32>,
     material: Option<usize>,
     /// The names after `usemtl`, each with the line that uses it first.
     pub material_names: Vec<(String, usize)>,
     /// The names after `mtllib`, with their lines.
     pub libraries: Vec<(String, usize)>,
-    /// The largest absolute indices, and their lines: vertices may follow the faces that use them.
+    /// The largest absolute index, and its line: vertices may follow the faces that use them.
     last_vertex: (usize, usize),
-    last_normal: (usize, usize),
 }
 
-/// Feeds tobj the `v`, `vn` and `f` lines of a file and records the others.
+/// Feeds tobj the positions and the vertices of the faces of a file, and records what else it says.
 pub(super) struct Statements<'a, 'w> {
     file: &'a str,
     lines: Lines<'a>,
@@ -77,9 +85,13 @@ impl<'a, 'w> Statements<'a, 'w> {
             let invalid =
                 |(problem, cure): Problem| LoadError::at(self.file, number, problem, cure);
             let for_tobj = match keyword {
-                "v" | "vn" => {
-                    self.record.count(keyword).map_err(invalid)?;
+                "v" => {
+                    self.record.count_vertex().map_err(invalid)?;
                     true
+                }
+                "vn" => {
+                    self.record.add_normal(numbers).map_err(invalid)?;
+                    false
                 }
                 "f" => match self.record.face(number, numbers).map_err(invalid)? {
                     None => true,
@@ -92,10 +104,6 @@ impl<'a, 'w> Statements<'a, 'w> {
                         true
                     }
                 },
-                "usemtl" | "mtllib" if rest.trim().is_empty() => {
-                    let problem = format!("`{keyword}` without a name");
-                    return Err(invalid((problem, "name one or remove the line")));
-                }
                 "usemtl" => {
                     self.record.use_material(&mut self.names, number, rest.trim());
                     false
@@ -120,12 +128,26 @@ impl<'a, 'w> Statements<'a, 'w> {
             };
             if for_tobj {
                 self.number = number;
-                self.line.extend([keyword, " ", numbers, "\n"]);
+                self.line.push_str(keyword);
+                if keyword == "f" {
+                    for corner in numbers.split_whitespace() {
+                        let vertex = corner.split('/').next().unwrap_or_default();
+                        self.line.extend([" ", vertex]);
+                    }
+                } else if numbers.split_whitespace().nth(4).is_some() {
+                    self.warnings.add(self.file, number, WarningKind::VertexColors);
+                    for coordinate in numbers.split_whitespace().take(3) {
+                        self.line.extend([" ", coordinate]);
+                    }
+                } else {
+                    self.line.extend([" ", numbers]);
+                }
+                self.line.push('\n');
                 return Ok(());
             }
         }
         self.record
-            .check_last_indices()
+            .check_last_vertex()
             .map_err(|(line, (problem, cure))| LoadError::at(self.file, line, problem, cure))
     }
 }
@@ -163,53 +185,60 @@ enum FaceDefect {
 }
 
 impl Record {
-    /// Counts a `v` or `vn` line.
-    fn count(&mut self, keyword: &str) -> Result<(), Problem> {
-        let (counter, what) = if keyword == "v" {
-            (&mut self.vertices, "vertices")
-        } else {
-            (&mut self.normals, "normals")
-        };
-        *counter += 1;
-        within_limit(*counter, what, MAX_COUNT, "split the model")
+    fn count_vertex(&mut self) -> Result<(), Problem> {
+        self.vertices += 1;
+        within_limit(self.vertices, "vertices", MAX_COUNT, "split the model")
     }
 
-    /// Checks and counts the face `corners`. tobj does not name the line of a bad index, and
-    /// overflows on normals far out of range.
+    /// Keeps the normal of a `vn` line if it has a direction.
+    fn add_normal(&mut self, numbers: &str) -> Result<(), Problem> {
+        let lines = self.normal_indices.len() + 1;
+        within_limit(lines, "normals", MAX_COUNT, "split the model")?;
+        let numbers: Vec<f64> =
+            numbers.split_whitespace().take(3).map_while(|word| word.parse().ok()).collect();
+        let normal = if numbers.len() == 3 { unit(DVec3::from_slice(&numbers)) } else { None };
+        self.normal_indices.push(normal.map(|_| self.normals.len() as u32));
+        self.normals.extend(normal);
+        Ok(())
+    }
+
+    /// The index into `normals` of the `vn` line of this number, if it exists and has a direction.
+    pub fn normal(&self, number: u32) -> Option<u32> {
+        *self.normal_indices.get((number as usize).checked_sub(1)?)?
+    }
+
+    /// Checks and counts the face `corners`: tobj does not name the line of a bad index.
     fn face(&mut self, line: usize, corners: &str) -> Result<Option<FaceDefect>, Problem> {
-        let (mut count, mut with_normal) = (0, 0);
-        for corner in corners.split_ascii_whitespace() {
-            count += 1;
-            let mut parts = corner.split('/');
-            let vertex = index(parts.next(), corner, self.vertices, "vertices")?;
-            if vertex > self.last_vertex.0 {
-                self.last_vertex = (vertex, line);
-            }
-            let texture = parts.next();
-            if let Some(normal) = parts.next().filter(|normal| !normal.is_empty()) {
-                let normal = index(Some(normal), corner, self.normals, "normals")?;
-                if normal > self.last_normal.0 {
-                    self.last_normal = (normal, line);
-                }
-                with_normal += 1;
-            }
-            let is_texture = |text: &str| text.is_empty() || text.parse::<i64>().is_ok();
-            if !texture.is_none_or(is_texture) || parts.next().is_some() {
-                return Err(not_a_corner(corner));
-            }
-        }
+        let count = corners.split_whitespace().count();
         within_limit(count, "corners in one face", MAX_CORNERS, "split the face")?;
         if count < 3 {
             return Ok(Some(FaceDefect::TooFewCorners));
         }
-        let smooth = with_normal == count;
-        if self.runs.last().is_none_or(|run| run.material != self.material || run.smooth != smooth)
-        {
-            self.runs.push(Run { first_face: self.faces, material: self.material, smooth });
+        let first_normal = self.corner_normals.len();
+        for corner in corners.split_whitespace() {
+            let mut parts = corner.split('/');
+            let vertex = vertex_index(parts.next().unwrap_or_default(), corner, self.vertices)?;
+            if vertex > self.last_vertex.0 {
+                self.last_vertex = (vertex, line);
+            }
+            // The part between is a texture's.
+            if let Some(normal) = parts.nth(1).filter(|normal| !normal.is_empty()) {
+                self.corner_normals.push(normal_number(normal, self.normal_indices.len()));
+            }
+        }
+        let named = self.corner_normals.len() - first_normal;
+        let with_normals = named == count;
+        if !with_normals {
+            self.corner_normals.truncate(first_normal);
+        }
+        let continues =
+            |run: &Run| run.material == self.material && run.with_normals == with_normals;
+        if !self.runs.last().is_some_and(continues) {
+            self.runs.push(Run { first_face: self.faces, material: self.material, with_normals });
         }
         self.faces += 1;
         within_limit(self.faces, "faces", MAX_COUNT, "split the model")?;
-        Ok((with_normal > 0 && !smooth).then_some(FaceDefect::PartialNormals))
+        Ok((named > 0 && !with_normals).then_some(FaceDefect::PartialNormals))
     }
 
     fn use_material(&mut self, names: &mut HashMap<String, usize>, line: usize, name: &str) {
@@ -221,29 +250,37 @@ impl Record {
         self.material = Some(index);
     }
 
-    fn check_last_indices(&self) -> Result<(), (usize, Problem)> {
-        for ((last, line), count, what) in [
-            (self.last_vertex, self.vertices, "vertices"),
-            (self.last_normal, self.normals, "normals"),
-        ] {
-            if last > count {
-                return Err((line, out_of_range(&last.to_string(), count, what)));
-            }
+    fn check_last_vertex(&self) -> Result<(), (usize, Problem)> {
+        let (last, line) = self.last_vertex;
+        if last > self.vertices {
+            return Err((line, out_of_range(&last.to_string(), self.vertices)));
         }
         Ok(())
     }
 }
 
-/// The number, from 1, that `text` means when `count` elements stand before it.
-fn index(text: Option<&str>, corner: &str, count: usize, what: &str) -> Result<usize, Problem> {
-    let text = text.unwrap_or_default();
+/// The number, from 1, of the vertex that `text` means when `count` of them stand before it.
+fn vertex_index(text: &str, corner: &str, count: usize) -> Result<usize, Problem> {
     let index: i64 = text.parse().map_err(|_| not_a_corner(corner))?;
     let distance = usize::try_from(index.unsigned_abs()).unwrap_or(usize::MAX);
     match index.signum() {
         1 if distance <= MAX_COUNT => Ok(distance),
         -1 if distance <= count => Ok(count - distance + 1),
-        _ => Err(out_of_range(text, count, what)),
+        _ => Err(out_of_range(text, count)),
     }
+}
+
+/// The same of a normal; 0 where there can be none.
+fn normal_number(text: &str, count: usize) -> u32 {
+    let index: i64 = text.parse().unwrap_or(0);
+    let number = if index < 0 { count as i64 + 1 + index } else { index };
+    u32::try_from(number).unwrap_or(0)
+}
+
+/// The unit vector of a normal of any finite length but 0; squares of very short and very long ones
+/// would leave the range of numbers.
+fn unit(normal: DVec3) -> Option<DVec3> {
+    (normal / normal.abs().max_element()).try_normalize()
 }
 
 fn not_a_corner(corner: &str) -> Problem {
@@ -254,9 +291,9 @@ fn not_a_corner(corner: &str) -> Problem {
     )
 }
 
-fn out_of_range(index: &str, count: usize, what: &str) -> Problem {
+fn out_of_range(index: &str, count: usize) -> Problem {
     (
-        format!("the face names number {index} of {count} {what}"),
+        format!("the face names number {index} of {count} vertices"),
         "count from 1, or back from -1 for the latest",
     )
 }
@@ -268,16 +305,10 @@ mod tests {
     /// The limits that no test file can reach, with both numbers.
     #[test]
     fn counts_beyond_32_bits_are_refused() {
-        let mut full = Record {
-            vertices: MAX_COUNT,
-            normals: MAX_COUNT,
-            faces: MAX_COUNT,
-            ..Record::default()
-        };
+        let mut full = Record { vertices: MAX_COUNT, faces: MAX_COUNT, ..Record::default() };
         let cure = "split the model";
         let beyond = |what| (format!("4294967296 {what}, the maximum is 4294967295"), cure);
-        assert_eq!(full.count("v").err(), Some(beyond("vertices")));
-        assert_eq!(full.count("vn").err(), Some(beyond("normals")));
+        assert_eq!(full.count_vertex().err(), Some(beyond("vertices")));
         assert_eq!(full.face(1, "1 2 3").err(), Some(beyond("faces")));
     }
 }

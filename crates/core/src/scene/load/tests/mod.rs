@@ -1,5 +1,8 @@
 //! Whole files, good and hostile, read from memory.
 
+mod closed;
+mod harmless;
+mod highlight;
 mod limits;
 mod mtl;
 mod obj;

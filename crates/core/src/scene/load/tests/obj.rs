@@ -55,7 +55,7 @@ fn vertices_that_are_not_numbers_are_refused_with_their_line() {
             "a.obj:5: a coordinate is not finite, or beyond ±1e50; correct the number",
         );
     }
-    for bad in ["v 1,5 2 3", "v 1 2", "v", "v a b c", "v 1 2 3 4 5", "v 1 2 3 4 5 6 7", "vn 1 2"] {
+    for bad in ["v 1,5 2 3", "v 1 2", "v", "v a b c", "v 1 2 3 x", "v 1 2 x"] {
         assert_refused(
             obj(format!("{TRIANGLE}{bad}\n")),
             &format!("a.obj:5: `{bad}` cannot be read; write three numbers, with a decimal point"),
@@ -76,16 +76,10 @@ fn indices_out_of_range_are_refused_with_their_line() {
             &format!("a.obj:6: the face names number {bad} of 3 vertices; {cure}"),
         );
     }
-    for bad in ["0", "2", "-2", "6148914691236517206", "-9223372036854775808"] {
-        assert_refused(
-            obj(format!("{TRIANGLE}vn 0 0 1\nf 1//1 2//1 3//{bad}\n")),
-            &format!("a.obj:6: the face names number {bad} of 1 normals; {cure}"),
-        );
-    }
     let cure =
         "write vertex, vertex/texture, vertex//normal or vertex/texture/normal, as whole numbers";
     let thirty = "123456789012345678901234567890";
-    for bad in ["1.0", thirty, "1/2/3/4", "/1", "x", "1/x", "1//x"] {
+    for bad in ["1.0", thirty, "/1", "//1", "x", "x/1/1"] {
         assert_refused(
             obj(format!("{TRIANGLE}f 1 2 {bad}\n")),
             &format!("a.obj:5: `{bad}` is not a corner of a face; {cure}"),
@@ -95,7 +89,7 @@ fn indices_out_of_range_are_refused_with_their_line() {
 
 #[test]
 fn faces_with_too_few_corners_are_left_out() {
-    let loaded = obj(format!("{TRIANGLE}f\nf 1\nf 1 2\nf 1 2 3\nf 3 2")).expect("fine");
+    let loaded = obj(format!("{TRIANGLE}f\nf 1\nf 1 9\nf 1 2 3\nf 3 x")).expect("fine");
     assert_eq!(loaded.scene.counts().faces, 2);
     assert_eq!(
         warnings(&loaded),
@@ -151,16 +145,6 @@ fn what_is_not_drawn_is_counted() {
              (3 times, this is the first)",
             "a.obj:7: unknown statement ignored (2 times, this is the first)",
         ]
-    );
-    let colors = "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nf 1 2 3\n";
-    assert_eq!(
-        warnings(&obj(colors).expect("fine")),
-        ["a.obj: vertex colours ignored: colours come from materials"]
-    );
-    assert_refused(
-        obj("v 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
-        "a.obj:2: this vertex has no colour and others have one; \
-         give every `v` three numbers, or every `v` six",
     );
 }
 
@@ -290,13 +274,6 @@ fn normals_make_faces_smooth() {
         let text = format!("{TRIANGLE}vn 3{length} 0 -4{length}\nf 1//1 2//1 3//1\n");
         let n = obj(text).expect("fine").scene.mesh.normals[0];
         assert!((n - dvec3(0.6, 0.0, -0.8)).length() < 1e-12, "{n}");
-    }
-    for bad in ["0 0 0", "nan 0 1", "0 inf 1", "0 0 1e400"] {
-        assert_refused(
-            obj(format!("{TRIANGLE}vn 0 0 1\nvn {bad}\nf 1//1 2//2 3//1\n")),
-            "a.obj:6: a normal is zero or not finite; \
-             correct it, or leave the normals out for flat faces",
-        );
     }
 }
 
