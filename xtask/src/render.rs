@@ -13,8 +13,8 @@ use lancer_core::method::{
 };
 use lancer_core::render::Control;
 use lancer_core::sampling::{Pattern, PixelSampling};
-use lancer_core::scene::load::WarningKind;
-use lancer_core::scene::{PointLight, Scene};
+use lancer_core::scene::load::{MAX_COORDINATE, MAX_RADIANCE, WarningKind};
+use lancer_core::scene::{Camera, PointLight, Scene};
 
 use crate::arguments::{indexes, structure, warn_of_unused, whole};
 use crate::chapters::{list, methods, scenes_in_words};
@@ -27,6 +27,7 @@ use crate::{progress, scene};
   cargo xtask render whitted --out whitted.png
   cargo xtask render bunny.obj --method appel --size 1024x1024 --spp 16 --out bunny.png
   cargo xtask render whitted --spp 16 --adaptive 0.02 --out smooth.png
+  cargo xtask render house.obj --up 0,0,1 --out house.png
   cargo xtask render room --depth 8 --eye 0.3,1.6,4 --exposure 0.5 --out room.exr")]
 pub struct Args {
     /// A .toml or .obj file, or a scene of the course
@@ -60,6 +61,10 @@ pub struct Args {
     /// Moves the point in the middle of the picture
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     look_at: Option<Numbers<3>>,
+    /// The direction that points up in the picture, such as 0,0,1 for a model whose z does; y, or the
+    /// scene's own, unless given. A scene without a camera is seen from the front all the same
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    up: Option<Numbers<3>>,
     /// Vertical opening angle in degrees
     #[arg(long, value_name = "DEG", value_parser = finite, allow_hyphen_values = true)]
     fov: Option<f64>,
@@ -218,6 +223,13 @@ pub fn run(args: &Args) -> Result<()> {
 /// Applies the camera and the lights of the command line.
 fn place(scene: &mut Scene, headlight: bool, args: &Args) -> Result<()> {
     let point = |numbers: Numbers<3>| DVec3::from(numbers.0);
+    if let Some(up) = args.up.map(point) {
+        let framing = scene.bounding_sphere().map(Camera::framing);
+        scene.camera = match framing {
+            Some(framing) if framing == scene.camera => framing.turned_to(up),
+            _ => Camera { up, ..scene.camera },
+        };
+    }
     if let Some(eye) = args.eye {
         scene.camera.eye = point(eye);
     }
@@ -227,25 +239,29 @@ fn place(scene: &mut Scene, headlight: bool, args: &Args) -> Result<()> {
     if let Some(fov) = args.fov {
         scene.camera.fov = fov;
     }
-    scene.camera.check().context("--eye, --look-at, --fov")?;
+    scene.camera.check().context("--eye, --look-at, --up, --fov")?;
     if headlight {
         scene.lights = vec![PointLight::beside(&scene.camera)];
     }
     if !args.light.is_empty() {
-        scene.lights = args
-            .light
-            .iter()
-            .map(|&Numbers([x, y, z, intensity])| PointLight {
-                position: DVec3::new(x, y, z),
-                intensity: Rgb::splat(intensity),
-            })
-            .collect();
-        ensure!(
-            scene.lights.iter().all(|light| light.intensity.x >= 0.0),
-            "--light: an intensity is negative; the fourth number must be at least 0"
-        );
+        scene.lights = args.light.iter().map(point_light).collect::<Result<_>>()?;
     }
     Ok(())
+}
+
+/// A light of the command line, within the limits of scene files.
+fn point_light(&Numbers([x, y, z, intensity]): &Numbers<4>) -> Result<PointLight> {
+    let position = DVec3::new(x, y, z);
+    ensure!(
+        position.abs().max_element() <= MAX_COORDINATE,
+        "--light: position is {:?}; coordinates must be finite and below {MAX_COORDINATE:e}",
+        position.to_array()
+    );
+    ensure!(
+        (0.0..=MAX_RADIANCE).contains(&intensity),
+        "--light: intensity is {intensity:?}; it must be between 0 and {MAX_RADIANCE:e}"
+    );
+    Ok(PointLight { position, intensity: Rgb::splat(intensity) })
 }
 
 /// Says what the method takes no notice of: flags, and what is in the scene.

@@ -4,6 +4,10 @@ use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use exr::prelude::{
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image as ExrImage, Layer, LayerAttributes,
+    Text, Vec2, WritableImage,
+};
 use image::{DynamicImage, GrayImage, ImageBuffer, Luma, LumaA, Rgba};
 use lancer_core::image::{Image, ImageError, ImageSize, WriteError, load, save, write_atomically};
 use tempfile::{TempDir, tempdir};
@@ -80,6 +84,58 @@ fn exr_keeps_every_bit_and_ignores_the_exposure() {
         |image: &Image| image.pixels().iter().map(|p| p.map(f32::to_bits)).collect::<Vec<_>>();
     assert_eq!(loaded.size(), image.size());
     assert_eq!(bits(&loaded), bits(&image));
+}
+
+/// An EXR file of 3×2 pixels: in channel `k` of the list the pixel `i` is 10 k + i.
+fn write_exr(path: &Path, channels: &[&str]) {
+    let channel = |(k, &name): (usize, &&str)| {
+        let samples = (0..6).map(|i| (10 * k + i) as f32).collect();
+        AnyChannel::new(Text::from(name), FlatSamples::F32(samples))
+    };
+    let channels = AnyChannels::sort(channels.iter().enumerate().map(channel).collect());
+    let attributes = LayerAttributes::default();
+    let layer = Layer::new(Vec2(3, 2), attributes, Encoding::UNCOMPRESSED, channels);
+    ExrImage::from_layer(layer).write().to_file(path).unwrap();
+}
+
+#[test]
+fn the_picture_of_an_exr_is_found_among_its_channels() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("a.exr");
+    for (channels, wanted) in [
+        (&["R", "G", "B"][..], [0.0, 10.0, 20.0]),
+        (&["A", "B", "G", "R", "Z"], [30.0, 20.0, 10.0]),
+        // A luminance is grey, one layer is the picture, and of several it is the one without a name.
+        (&["Y"], [0.0, 0.0, 0.0]),
+        (&["A", "Y"], [10.0, 10.0, 10.0]),
+        (&["beauty.R", "beauty.G", "beauty.B"], [0.0, 10.0, 20.0]),
+        (&["depth.Z", "view.beauty.R", "view.beauty.G", "view.beauty.B"], [10.0, 20.0, 30.0]),
+        (&["mirror.R", "mirror.G", "mirror.B", "R", "G", "B"], [30.0, 40.0, 50.0]),
+    ] {
+        write_exr(&path, channels);
+        let loaded = load(&path).unwrap();
+        assert_eq!(loaded.size(), ImageSize::new(3, 2));
+        let pixels = (0..6).map(|i| wanted.map(|first: f32| first + i as f32));
+        assert_eq!(loaded.pixels(), pixels.collect::<Vec<_>>(), "{channels:?}");
+    }
+}
+
+#[test]
+fn an_exr_without_a_picture_tells_what_it_has() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("a.exr");
+    write_exr(&path, &["matte.R", "matte.G", "matte.B", "mirror.R", "mirror.G", "mirror.B"]);
+    let told = "which of its layers is the picture: matte, mirror? Keep one, or rename";
+    assert_tells(&load(&path).unwrap_err(), &path, told);
+    for (channels, told) in [
+        (&["Z"][..], "no picture in its channels Z; save it with channels R, G and B, or Y"),
+        (&["G", "R", "wR"], "no picture in its channels G, R, wR;"),
+        // Luminance and chroma: grey would be another picture.
+        (&["BY", "RY", "Y"], "no picture in its channels BY, RY, Y;"),
+    ] {
+        write_exr(&path, channels);
+        assert_tells(&load(&path).unwrap_err(), &path, told);
+    }
 }
 
 #[test]
@@ -237,6 +293,26 @@ mod unix {
         write_atomically(&link, b"new").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"new");
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    }
+
+    /// By a chain of links, relative and absolute, to a file that is not there yet.
+    #[test]
+    fn a_link_to_nothing_is_filled() {
+        let folder = tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        fs::create_dir(path("far")).unwrap();
+        symlink("far/second", path("first")).unwrap();
+        symlink(path("far/new.csv"), path("far/second")).unwrap();
+        write_atomically(path("first"), b"new").unwrap();
+        assert_eq!(fs::read(path("far/new.csv")).unwrap(), b"new");
+        assert_eq!(names(folder.path()), ["far", "first"]);
+        assert_eq!(names(&path("far")), ["new.csv", "second"]);
+        assert!(fs::symlink_metadata(path("first")).unwrap().is_symlink());
+
+        symlink("circle", path("circle")).unwrap();
+        let error = write_atomically(path("circle"), b"new").unwrap_err();
+        assert!(error.source().unwrap().to_string().contains("circle; name a file"), "{error:?}");
+        assert!(fs::symlink_metadata(path("circle")).unwrap().is_symlink());
     }
 
     #[test]

@@ -62,7 +62,7 @@ fn cure(error: &io::Error) -> &'static str {
 /// part, and after an error the old one is intact and nothing is left over.
 ///
 /// A new file gets the usual permissions (read and write, less the process's umask); a file that
-/// is replaced keeps its own. A link is followed.
+/// is replaced keeps its own. A link is followed, also to a file that is not there yet.
 ///
 /// # Errors
 /// See [`WriteError`]; every message names the file.
@@ -112,8 +112,7 @@ fn prepare(path: &Path) -> Result<Prepared, WriteError> {
             return Err(WriteError::WriteProtected { path });
         }
     }
-    let target =
-        if old.is_some() { fs::canonicalize(path).map_err(io_error)? } else { path.into() };
+    let target = followed(path).map_err(io_error)?;
     let folder = match target.parent() {
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
@@ -128,6 +127,20 @@ fn prepare(path: &Path) -> Result<Prepared, WriteError> {
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let temporary = builder.tempfile_in(folder).map_err(io_error)?;
     Ok(Prepared { temporary, target, old })
+}
+
+/// The file that a name stands for: what its link, or a chain of them, leads to, whether it is there or
+/// not.
+fn followed(path: &Path) -> io::Result<PathBuf> {
+    /// As many as Linux follows.
+    const MOST_LINKS: usize = 40;
+    let mut target = path.to_owned();
+    for _ in 0..=MOST_LINKS {
+        let Ok(next) = fs::read_link(&target) else { return Ok(target) };
+        // Relative to the folder that the link is in; an absolute one replaces it.
+        target = target.parent().unwrap_or(Path::new("")).join(next);
+    }
+    Err(io::Error::other("its links lead in a circle; name a file"))
 }
 
 fn is_folder(path: &Path) -> io::Result<bool> {

@@ -1,3 +1,4 @@
+use std::error::Error;
 use std::fs::File;
 use std::io::{self, BufReader, Cursor, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -5,6 +6,7 @@ use std::path::{Path, PathBuf};
 use ::image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Rgb32FImage, RgbImage};
 use thiserror::Error;
 
+use super::exr::{ExrError, ExrFile};
 use super::{Image, ImageSize, SizeError, WriteError, check_writable, srgb, write_atomically};
 
 /// Why a picture was not saved or loaded.
@@ -62,7 +64,23 @@ pub enum ImageError {
         /// The picture file.
         path: PathBuf,
         /// What the decoder says.
-        reason: ::image::ImageError,
+        reason: Box<dyn Error + Send + Sync>,
+    },
+    /// Several layers of an EXR file have colours, and none of them is the picture by its name.
+    #[error("cannot read `{}`: which of its layers is the picture: {}? Keep one, or rename its channels R, G and B", path.display(), layers.join(", "))]
+    Layers {
+        /// The picture file.
+        path: PathBuf,
+        /// The layers' names.
+        layers: Vec<String>,
+    },
+    /// An EXR file has neither colours nor a luminance.
+    #[error("cannot read `{}`: there is no picture in its channels {}; save it with channels R, G and B, or Y", path.display(), channels.join(", "))]
+    Channels {
+        /// The picture file.
+        path: PathBuf,
+        /// The channels' names.
+        channels: Vec<String>,
     },
     /// The picture would take more memory than [`MAX_BYTES`], whatever the size of its file.
     #[error("cannot read `{}`: a picture of {size} is too large: {bytes} bytes, the maximum is {MAX_BYTES}; make it smaller", path.display())]
@@ -119,8 +137,9 @@ pub fn check_target(path: impl AsRef<Path>) -> Result<(), ImageError> {
 }
 
 /// Loads a picture in the format that the file's name tells, in either case: `.png`, of 8 or 16
-/// bits, colour or grey, taken as sRGB and decoded to linear, or `.exr`, taken as linear. Alpha is
-/// left out.
+/// bits, colour or grey, taken as sRGB and decoded to linear, or `.exr`, taken as linear: its
+/// channels R, G and B, or its luminance Y as grey, or the colours of its only layer. Alpha is left
+/// out.
 ///
 /// # Errors
 /// If the extension is unknown or the file cannot be read, is no whole picture of its format, or
@@ -138,18 +157,36 @@ pub fn load(path: impl AsRef<Path>) -> Result<Image, ImageError> {
             _ => ImageError::Read { path, source },
         }
     })?;
-    let damaged = |reason| ImageError::Decode { path: path.into(), reason };
-    let reader = ImageReader::with_format(BufReader::new(file), format);
-    let decoder = reader.into_decoder().map_err(damaged)?;
-    let (width, height) = decoder.dimensions();
-    let size = ImageSize::checked(width.into(), height.into())
-        .map_err(|reason| ImageError::Size { path: path.into(), reason })?;
-    let bytes = decoder.total_bytes().max((size.pixels() * size_of::<[f32; 3]>()) as u64);
-    if bytes > MAX_BYTES {
-        return Err(ImageError::TooLarge { path: path.into(), size, bytes });
+    let damaged =
+        |reason: Box<dyn Error + Send + Sync>| ImageError::Decode { path: path.into(), reason };
+    let checked = |width: usize, height: usize, bytes: u64| {
+        let size = ImageSize::checked(width as u64, height as u64)
+            .map_err(|reason| ImageError::Size { path: path.into(), reason })?;
+        let bytes = bytes.max((size.pixels() * size_of::<[f32; 3]>()) as u64);
+        if bytes > MAX_BYTES {
+            return Err(ImageError::TooLarge { path: path.into(), size, bytes });
+        }
+        Ok(size)
+    };
+    let file = BufReader::new(file);
+    if format == ImageFormat::OpenExr {
+        let unread = |error| match error {
+            ExrError::Damaged(error) => damaged(error.into()),
+            ExrError::Layers(layers) => ImageError::Layers { path: path.into(), layers },
+            ExrError::Channels(channels) => ImageError::Channels { path: path.into(), channels },
+        };
+        let file = ExrFile::open(file).map_err(unread)?;
+        let [width, height] = file.size;
+        let size = checked(width, height, 0)?;
+        return Ok(Image::from_pixels(size, file.pixels().map_err(unread)?));
     }
-    let decoded = DynamicImage::from_decoder(decoder).map_err(damaged)?;
-    Ok(Image::from_pixels(size, linear_pixels(decoded)))
+    let decoder = ImageReader::with_format(file, format)
+        .into_decoder()
+        .map_err(|reason| damaged(reason.into()))?;
+    let (width, height) = decoder.dimensions();
+    let size = checked(width as usize, height as usize, decoder.total_bytes())?;
+    let decoded = DynamicImage::from_decoder(decoder).map_err(|reason| damaged(reason.into()))?;
+    Ok(Image::from_pixels(size, linear_pixels(&decoded)))
 }
 
 fn format_of(path: &Path) -> Result<ImageFormat, ImageError> {
@@ -173,19 +210,12 @@ fn encode(image: &Image, format: ImageFormat, ev: f64) -> Result<Vec<u8>, ::imag
     Ok(bytes.into_inner())
 }
 
-fn linear_pixels(decoded: DynamicImage) -> Vec<[f32; 3]> {
-    match decoded {
-        DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
-            decoded.into_rgb32f().pixels().map(|pixel| pixel.0).collect()
-        }
-        _ => {
-            // Exact for 8-bit levels too: v/255 = 257·v/65535.
-            let linear: Vec<f32> =
-                (0..=u16::MAX).map(|v| srgb::decode(f64::from(v) / 65535.0) as f32).collect();
-            let channel = |level: u16| linear[usize::from(level)];
-            decoded.into_rgb16().pixels().map(|pixel| pixel.0.map(channel)).collect()
-        }
-    }
+fn linear_pixels(decoded: &DynamicImage) -> Vec<[f32; 3]> {
+    // Exact for 8-bit levels too: v/255 = 257·v/65535.
+    let linear: Vec<f32> =
+        (0..=u16::MAX).map(|v| srgb::decode(f64::from(v) / 65535.0) as f32).collect();
+    let channel = |level: u16| linear[usize::from(level)];
+    decoded.to_rgb16().pixels().map(|pixel| pixel.0.map(channel)).collect()
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Finished pictures: linear RGB in `f32`, read and written as PNG (sRGB) or EXR (linear).
 
 mod atomic;
+mod exr;
 mod file;
 mod size;
 mod srgb;
@@ -71,15 +72,23 @@ impl Image {
     /// Counts the pixels that no display can show. [`Image::to_srgb8`] and PNG files have no room
     /// for them: whoever writes a picture reports these counts.
     pub fn defects(&self) -> Defects {
-        let mut defects = Defects::default();
-        for pixel in &self.pixels {
-            if !pixel.iter().all(|channel| channel.is_finite()) {
-                defects.not_finite += 1;
-            } else if pixel.iter().any(|&channel| channel < 0.0) {
-                defects.negative += 1;
-            }
+        let is_negative = |pixel: &&[f32; 3]| {
+            pixel.iter().all(|channel| channel.is_finite())
+                && pixel.iter().any(|&channel| channel < 0.0)
+        };
+        Defects {
+            not_finite: self.not_finite().count(),
+            negative: self.pixels.iter().filter(is_negative).count(),
         }
-        defects
+    }
+
+    /// The pixels with a NaN or infinite channel, by column and row.
+    pub fn not_finite(&self) -> impl Iterator<Item = [u32; 2]> {
+        let is_finite = |pixel: &[f32; 3]| pixel.iter().all(|channel| channel.is_finite());
+        let width = self.size.width as usize;
+        let place = move |i: usize| [(i % width) as u32, (i / width) as u32];
+        let bad = self.pixels.iter().enumerate().filter(move |(_, pixel)| !is_finite(pixel));
+        bad.map(move |(i, _)| place(i))
     }
 
     /// The picture as a display shows it, row by row: each channel is multiplied by
@@ -147,6 +156,9 @@ mod tests {
             [-1e-30, 0.0, -2.0],
         ]);
         assert_eq!(image.defects(), Defects { not_finite: 4, negative: 1 });
+        let in_columns = Image::from_pixels(ImageSize::new(2, 3), image.pixels.clone());
+        let places: Vec<_> = in_columns.not_finite().collect();
+        assert_eq!(places, [[1, 0], [0, 1], [1, 1], [0, 2]]);
         assert_eq!(Image::new(ImageSize::new(3, 2)).defects(), Defects::default());
     }
 }

@@ -1,7 +1,7 @@
 use std::error::Error;
 use std::fmt;
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 use super::load::MAX_COORDINATE;
 use super::{Camera, PointLight};
@@ -81,6 +81,16 @@ impl Camera {
             fov: FOV,
         }
     }
+
+    /// The camera turned about what it looks at, with the shortest turn of its `up` to the new one. To
+    /// z it takes the front of a model from +z to −y, as programs do where z points up.
+    pub fn turned_to(self, up: DVec3) -> Self {
+        let [Some(from), Some(to)] = [self.up, up].map(DVec3::try_normalize) else {
+            return Self { up, ..self };
+        };
+        let turn = DQuat::from_rotation_arc(from, to);
+        Self { eye: self.look_at + turn * (self.eye - self.look_at), up, ..self }
+    }
 }
 
 impl PointLight {
@@ -118,6 +128,24 @@ mod tests {
         }
         let from = camera.eye - bounds.center;
         assert!(from.z > from.x && from.x > 0.0 && from.y > 0.0);
+    }
+
+    /// By hand: of a model with z up the front is at −y, the right at +x and the top at +z.
+    #[test]
+    fn a_framing_is_turned_upright() {
+        let bounds = Sphere { center: dvec3(3.0, -2.0, 7.0), radius: 0.15 };
+        let framing = Camera::framing(bounds);
+        let from = framing.eye - bounds.center;
+        let turned = framing.turned_to(4.0 * DVec3::Z);
+        let wanted = bounds.center + dvec3(from.x, -from.z, from.y);
+        assert!(turned.eye.distance(wanted) < 1e-15, "{turned:?}");
+        assert_eq!(turned, Camera { eye: turned.eye, up: 4.0 * DVec3::Z, ..framing });
+        // Upside down is the same height on the other side.
+        let below = framing.turned_to(-DVec3::Y).eye - bounds.center;
+        assert!((below.y + from.y).abs() < 1e-15 && (below.length() - from.length()).abs() < 1e-15);
+        assert_eq!(framing.turned_to(DVec3::Y).eye.distance(framing.eye), 0.0);
+        let none = framing.turned_to(DVec3::ZERO);
+        assert_eq!(none.check(), Err(CameraError::UpAlongView));
     }
 
     #[test]
