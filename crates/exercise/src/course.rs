@@ -9,7 +9,7 @@ pub struct Course<S: 'static> {
     pub package: &'static str,
     /// The exercises.
     pub exercises: &'static [Exercise<S>],
-    /// The chapter's own code.
+    /// The right answers.
     pub reference: S,
 }
 
@@ -50,7 +50,7 @@ pub struct Card {
     pub vary: &'static str,
     /// The idea, the formula, almost the code.
     pub hints: [&'static str; 3],
-    /// Where the course's own answer stands.
+    /// The answer, and where the course's own code does the same.
     pub solution: Solution,
 }
 
@@ -62,10 +62,12 @@ impl Card {
     }
 }
 
-/// An item of the course's code.
+/// A right answer, and the item of the course's code that does the same.
 #[derive(Clone, Copy, Debug)]
 pub struct Solution {
-    /// Its file, from the root of the repository.
+    /// A student's whole file that passes every check; the reference is made of it.
+    pub answer: &'static str,
+    /// The file of the course's item, from the root of the repository.
     pub file: &'static str,
     /// How its first line begins, `pub fn reflect`.
     pub item: &'static str,

@@ -114,7 +114,7 @@ fn check<S: Copy + Send>(
         State::Passing => line(
             &mut text,
             format_args!(
-                "\nRight. See it: cargo xtask exercise show {name}\nThen: {}\nThe course's own answer: cargo xtask exercise solution {name}",
+                "\nRight. See it: cargo xtask exercise show {name}\nThen: {}\nCompare with ours: cargo xtask exercise solution {name}",
                 card.vary
             ),
         ),

@@ -38,6 +38,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              the three parts, `.normalize()`, and `Ray::new(camera.eye, …)`.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e01_primary_ray.rs"),
             file: "crates/core/src/scene/camera.rs",
             item: "impl PrimaryRays",
             notice: "the corner, the step to the right and the step down are worked out once per picture, so \

@@ -45,6 +45,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              `(t > 0.0 && t.is_finite()).then(|| (t, DVec3::new(u, v, w) / det))`.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e02_ray_triangle.rs"),
             file: "crates/core/src/geometry/triangle.rs",
             item: "pub fn intersect_triangle",
             notice: "the shear is worked out once per ray, and t must exceed a bound of its own error, which \

@@ -40,6 +40,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              `[a.min(b), a.max(b)].into_iter().find(|t| *t > 0.0)`.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e03_ray_sphere.rs"),
             file: "crates/core/src/geometry/sphere.rs",
             item: "pub fn intersect",
             notice: "a ray that starts outside and does not approach is sent away before the root is taken, \

@@ -36,6 +36,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              `intensity / (distance * distance)`.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e05_local_light.rs"),
             file: "crates/core/src/illumination.rs",
             item: "pub fn local",
             notice: "it is the bracket of eq:local: `lit`, below it, multiplies it by I · vis/d² and asks for vis last, \

@@ -32,6 +32,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              `Some(eta * incident + (eta * cos1 - cos2_squared.sqrt()) * n)`.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e07_refracted_ray.rs"),
             file: "crates/core/src/optics.rs",
             item: "pub fn refract",
             notice: "1 − cos² θ₁ is written (1 − cos θ₁)(1 + cos θ₁): near normal incidence the difference of \

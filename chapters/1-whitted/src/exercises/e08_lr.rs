@@ -39,6 +39,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              ray.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e08_lr.rs"),
             file: "crates/whitted/src/trace.rs",
             item: "fn at_surface",
             notice: "no ray is traced for a share of 0, `Branches` in crates/core/src/optics.rs chooses n₁, n₂ and what \
@@ -396,7 +397,7 @@ fn explain(subject: &Subject, [x, y]: [u32; 2]) -> String {
     let scene = scenes::whitted();
     let stage = |subject| Stage::new(&scene, MAX_DEPTH, subject);
     let ray = scene.camera.primary_rays(SIZE).through(f64::from(x) + 0.5, f64::from(y) + 0.5);
-    let tree = reference::recorded(&stage(reference::SUBJECT), &from_eye(ray));
+    let tree = stage(reference::SUBJECT).recorded(&from_eye(ray));
     let lines = tree.nodes.iter().map(|node| {
         let got = (subject.lr)(&stage(*subject), &node.call.ray, node.call.depth);
         let mark = if Shown::distance(&got, &node.radiance) > 1e-9 { "  ← differs" } else { "" };

@@ -38,6 +38,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              Push what it returns for `RayKind::Refracted`, then for `RayKind::Mirror`.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e09_ray_tree.rs"),
             file: "crates/whitted/src/ray_tree.rs",
             item: "impl Recorder for RayTree",
             notice: "there is no second recursion: the tree is recorded while LR runs, so it cannot differ from it",

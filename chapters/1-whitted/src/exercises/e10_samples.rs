@@ -32,6 +32,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              the error, `(*a - *b).length_squared()` is the sum over a pixel's three channels.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e10_samples.rs"),
             file: "crates/core/src/sampling.rs",
             item: "pub fn some_of_pixel",
             notice: "the same grid beside two random layouts; `rmse` is in crates/core/src/metric/mod.rs",

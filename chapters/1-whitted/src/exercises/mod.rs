@@ -124,7 +124,7 @@ fn title_rays(max_depth: u32) -> (Scene, Vec<(String, Ray)>) {
         .collect();
     rays.sort_by_cached_key(|(_, ray)| {
         let stage = Stage::new(&scene, max_depth, reference::SUBJECT);
-        reference::recorded(&stage, &from_eye(*ray)).nodes.len()
+        stage.recorded(&from_eye(*ray)).nodes.len()
     });
     (scene, rays)
 }

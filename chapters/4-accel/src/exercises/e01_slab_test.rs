@@ -37,6 +37,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              for the smaller far, `(last - o) * inverse * FAR`. A comparison with NaN is false.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e01_slab_test.rs"),
             file: "crates/core/src/geometry/bounds.rs",
             item: "pub fn cross",
             notice: "the near t is rounded down as well, for hits that round below it, and a reciprocal that \

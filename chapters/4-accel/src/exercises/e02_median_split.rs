@@ -33,6 +33,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              Then `items.sort_by(|a, b| a.center[axis].total_cmp(&b.center[axis]).then(a.id.cmp(&b.id)))`.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e02_median_split.rs"),
             file: "crates/accel/src/bvh/grow.rs",
             item: "pub fn split_at_median",
             notice: "nothing is sorted: `select_nth_unstable_by` only puts the middle item into its place, in \

@@ -34,6 +34,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              for `far.min`.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e06_kd_plane.rs"),
             file: "crates/accel/src/kd/sides.rs",
             item: "pub(super) fn divide",
             notice: "the course's ray is thick, by what it may err: it reaches a plane before it leaves it",
