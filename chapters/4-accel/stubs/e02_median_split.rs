@@ -5,6 +5,9 @@ use chapter_4::exercises::prelude::*;
 /// Divides the items of a node into two halves: sorts the lower half to the front, and returns how many
 /// items that are.
 ///
+/// - `items: &mut [Item]` (chapters/4-accel/src/exercises/mod.rs): an array of known length, `items.len()`, to
+///   be put into another order. An `Item` has a `center`, a `DVec3` of three `f64`, and an `id`, a `PrimitiveId`
+///   that compares like a number.
 /// - The axis is the longest of the box around the centres.
 /// - Lower is what has the smaller coordinate `item.center[axis]`; of equal ones, what has the smaller
 ///   `item.id`.

@@ -234,3 +234,63 @@ fn beams() {
         }
     }
 }
+
+/// 4.13: of the ray that is met the slabs leave t = 2 to 4.5, by hand; of the other nothing, for it is in y until
+/// 3.2 / 1.2 = 2.67, and in x from 1.8 / 0.6 = 3 on.
+#[test]
+fn slab_test() {
+    let rows = rows("4.13");
+    let part = |ray: &str, slab: &str| {
+        let is_it = |row: &&Record| row.text("ray") == ray && row.text("slab") == slab;
+        let row = rows.iter().find(is_it).expect("a slab of a ray");
+        ["enter", "leave"].map(|name| (1e9 * row.number(name)).round() / 1e9)
+    };
+    let met = ["x", "y", "all"].map(|slab| part("meets the box", slab));
+    assert_eq!(met, [[1.5, 4.5], [2.0, 5.333_333_333], [2.0, 4.5]]);
+    let missed = ["x", "y", "all"].map(|slab| part("misses the box", slab));
+    assert_eq!(missed, [[3.0, 8.0], [1.0, 2.666_666_667], [3.0, 2.666_666_667]]);
+    let wanted = [("meets the box", "2.00 to 4.50"), ("misses the box", "none")];
+    for (row, (ray, part)) in rows.iter().filter(|row| row.text("slab") == "all").zip(wanted) {
+        assert_eq!(["ray", "by_points", "by_course"].map(|name| row.text(name)), [ray, part, part]);
+    }
+}
+
+/// 4.14: the costs by hand, from surfaces 8 e + 8 of boxes e wide: 1 + (16 · 1 + 84 · 4) / 96 and so on.
+#[test]
+fn split() {
+    let rows = rows("4.14");
+    let names = ["left_surface", "left", "right_surface", "right"];
+    let got: Vec<_> = rows.iter().map(|row| names.map(|name| row.number(name))).collect();
+    let wanted = [
+        [16.0, 1.0, 84.0, 4.0],
+        [28.0, 2.0, 72.0, 3.0],
+        [40.0, 3.0, 28.0, 2.0],
+        [84.0, 4.0, 16.0, 1.0],
+    ];
+    assert_eq!(got, wanted);
+    for (row, [a, n, b, m]) in rows.iter().zip(wanted) {
+        let cost = 1.0 + (a * n + b * m) / 96.0;
+        assert!((row.number("cost") - cost).abs() < 1e-12, "{row:?}");
+        assert!((row.number("counted") / cost - 1.0).abs() < 0.02, "{row:?}");
+    }
+}
+
+/// 4.15: the walk by hand. The planes of x are met at t = 0.6, 1.6 and so on, those of y at (j − 0.5) / 0.6.
+#[test]
+fn walk() {
+    let rows = rows("4.15");
+    let cells: Vec<_> =
+        rows.iter().map(|row| ["cell_x", "cell_y"].map(|name| row.number(name))).collect();
+    let xs = [0, 1, 1, 2, 2, 3, 4, 4, 5, 6, 6, 7];
+    let ys = [0, 0, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4];
+    assert_eq!(
+        cells,
+        xs.into_iter().zip(ys).map(|(x, y)| [x, y].map(f64::from)).collect::<Vec<_>>()
+    );
+    let steps: String = rows.iter().map(|row| row.text("step")).collect();
+    assert_eq!(steps, "xyxyxxyxxyxout");
+    let t = |k: usize| rows[k].number("t");
+    assert!(
+        (t(0) - 0.6).abs() < 1e-12 && (t(3) - 2.5).abs() < 1e-12 && (t(11) - 7.5).abs() < 1e-12
+    );
+}

@@ -10,8 +10,11 @@ mod heat;
 mod irregular;
 mod nothing;
 mod sah;
+mod slab_test;
+mod split;
 mod structures;
 mod volumes;
+mod walk;
 
 use lancer_core::Rgb;
 use lancer_core::geometry::{Interval, Ray};
@@ -24,7 +27,7 @@ use lancer_lesson::picture::{picture, shown};
 
 use lancer_accel::structures::structure;
 
-/// All figures, in the lesson's order.
+/// All figures, by their numbers.
 pub const FIGURES: &[Figure] = &[
     Figure { id: "4.1", name: "nothing", make: nothing::make },
     Figure { id: "4.2", name: "volumes", make: volumes::make },
@@ -38,6 +41,10 @@ pub const FIGURES: &[Figure] = &[
     Figure { id: "4.10", name: "hardware", make: hardware::make },
     Figure { id: "4.11", name: "agreement", make: agreement::make },
     Figure { id: "4.12", name: "beams", make: beams::make },
+    // Drawings, which the lesson shows before the measurements of their sections.
+    Figure { id: "4.13", name: "slab-test", make: slab_test::make },
+    Figure { id: "4.14", name: "split", make: split::make },
+    Figure { id: "4.15", name: "walk", make: walk::make },
 ];
 
 /// A wrong answer of what decides in `f32`: nothing where there is something, something where there is nothing, or a
