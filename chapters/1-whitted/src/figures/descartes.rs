@@ -57,7 +57,7 @@ pub fn make(effort: Effort) -> Finished {
     }
     let holds = largest <= 8.0 * f64::EPSILON && total_is_right;
     let claim = format!(
-        "T is a unit vector in the plane of V and N with n₁ sin θ₁ = n₂ sin θ₂, to {} at every angle, and \
+        "T is a unit vector in the plane of D and N with n₁ sin θ₁ = n₂ sin θ₂, to {} at every angle, and \
          there is none beyond the critical angle.",
         number(largest)
     );
@@ -65,7 +65,7 @@ pub fn make(effort: Effort) -> Finished {
         .panel(Row::new().panel(1.0, interface()).panel(1.0, curves))
         .panel(near_critical(&mut data))
         .note("Method", "eq:descartes and eq:reflected-ray about a normal along no axis. The error is the largest \
-             of | |T| − 1 | and | n₁ N×V − n₂ N×T |, which is Descartes' law with its plane")
+             of | |T| − 1 | and | n₁ N×D − n₂ N×T |, which is Descartes' law with its plane")
         .note("Near the critical angle", "cos θ₂ = √(1 − (n₁/n₂)² sin² θ₁) is infinitely sensitive there: no \
              formula helps, only digits do. f32 is the same formula in 32 bits, from the rounded incident \
              direction; where a point is missing it found total reflection already")

@@ -89,7 +89,7 @@ pub fn make(effort: Effort) -> Finished {
         Axis::log("gap between ray and edge / distance travelled"),
         Axis::linear("boxes entered though missed (%)"),
     )
-    .title("The price: rays let in that pass beside an edge")
+    .title("The price: rays let in that pass outside an edge")
     .height(430.0);
     let spurious = passing(effort.pick(1_000, 20_000));
     let mut widest = 0.0_f64;
@@ -120,7 +120,7 @@ pub fn make(effort: Effort) -> Finished {
         .panel(Row::new().panel(1.0, let_in))
         .note("Pictures", "block towers seen straight from above along D = (0, −0, −1), every pixel's ray on a grid \
              that also holds the walls, so that there (plane − o) · 1/D is 0 · ∞ = NaN; black is a ray that \
-             entered no box, a wrong colour one that entered a box beside which it passes")
+             entered no box, a wrong colour one that entered a box which it misses")
         .note("Forms", "min/max: IEEE minNum as in f64::min; SSE: the second operand when one is NaN; swap: \
              planes put in order, « replace if better »; + pad and sign-picked: the two forms of pbrt 4; \
              ours (core::geometry::Slabs): planes by sign, « replace if better » on all three axes, far · (1 + 4 ε)")
@@ -131,7 +131,7 @@ pub fn make(effort: Effort) -> Finished {
             number(widest)
         ))
         .note("Reference", "exact: dyadic coordinates, so that each ray passes through the chosen point of its \
-             box, or beside its edge, without any rounding");
+             box, or outside its edge, without any rounding");
     Finished { plate, data }
 }
 
