@@ -4,7 +4,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use crate::geometry::Sphere;
-use crate::scene::{Material, MaterialId, Mesh, Scene};
+use crate::scene::{Face, Material, MaterialId, Mesh, Scene};
 
 /// What is wrong with the refracting triangles of one material.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -32,7 +32,7 @@ pub(super) fn flaws(scene: &Scene) -> Vec<(MaterialId, Flaws)> {
     let mesh = &scene.mesh;
     let is_refracting = |id: MaterialId| refracts[id.0 as usize];
     let faces = mesh.faces.iter().filter(|face| is_refracting(face.material));
-    let triangles: Vec<usize> = faces.flat_map(|face| face.triangles()).collect();
+    let triangles: Vec<usize> = faces.flat_map(Face::triangles).collect();
     let mut flaws = vec![Flaws::default(); scene.materials.len()];
     let material = |triangle: u32| {
         mesh.faces[mesh.triangles[triangles[triangle as usize]].face.0 as usize].material.0 as usize

@@ -9,6 +9,9 @@ use super::report::{LoadError, WarningKind, Warnings};
 use super::{DEFAULT_GREY, Open};
 use crate::scene::{Material, MaterialId};
 
+/// Materials with their names, in the order in which they are numbered.
+pub(super) type NamedMaterials = Vec<(String, Material)>;
+
 /// The materials of all libraries of one OBJ file.
 ///
 /// Read here and not by tobj, which panics on short colours, names no line, and keeps two materials
@@ -93,7 +96,7 @@ impl Library {
         }
     }
 
-    /// The materials with their names, in the order in which they are numbered.
+    /// All materials.
     ///
     /// # Errors
     /// When one of the `used` materials has a wrong value. Others become light grey.
@@ -101,7 +104,7 @@ impl Library {
         self,
         used: &[Option<MaterialId>],
         warnings: &mut Warnings,
-    ) -> Result<Vec<(String, Material)>, LoadError> {
+    ) -> Result<NamedMaterials, LoadError> {
         let mut is_used = vec![false; self.entries.len()];
         used.iter().flatten().for_each(|id| is_used[id.0 as usize] = true);
         let mut named = Vec::with_capacity(self.entries.len());

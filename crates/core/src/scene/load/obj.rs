@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::check::{excerpt, is_in_space, within_limit};
 use super::clean::Lines;
-use super::mtl::Library;
+use super::mtl::{Library, NamedMaterials};
 use super::report::{LoadError, WarningKind, Warnings};
 use super::statements::{Record, Statements};
 use super::{DEFAULT_GREY, MAX_COORDINATE, MAX_COUNT, Open, UNNAMED};
@@ -32,7 +32,7 @@ pub(super) fn read_obj(
     materials: Materials,
     open: Open<'_>,
     warnings: &mut Warnings,
-) -> Result<(Mesh, Vec<(String, Material)>), LoadError> {
+) -> Result<(Mesh, NamedMaterials), LoadError> {
     let file = path.display().to_string();
     let source = Source { path, file: &file, open };
     let mut statements = Statements::new(&file, source.open()?, warnings)?;
@@ -73,7 +73,7 @@ fn resolve_materials(
     library: Library,
     record: &Record,
     warnings: &mut Warnings,
-) -> Result<(Vec<(String, Material)>, Vec<MaterialId>), LoadError> {
+) -> Result<(NamedMaterials, Vec<MaterialId>), LoadError> {
     let mut resolve = |(name, line): &(String, usize)| {
         let (id, finding) = library.find(name);
         if let Some(finding) = finding {

@@ -192,7 +192,7 @@ fn many_surfaces_are_checked() {
         let at = DVec3::new((i % 50) as f64, (i / 50 % 50) as f64, (i / 2500) as f64) * 2.0;
         let cube = cuboid(-0.5, 0.5).into_iter().map(|triangle| triangle.map(|p| p + at));
         let cube: Vec<[DVec3; 3]> = cube.collect();
-        if i % 2 == 0 { cube } else { turned(&cube) }
+        if i.is_multiple_of(2) { cube } else { turned(&cube) }
     };
     let count = 20_000;
     let mut mesh = Mesh::default();
