@@ -3,18 +3,23 @@ use lancer_core::geometry::Ray;
 use lancer_core::intersector::{Hit, Observer, Probe, Query, Traversal, Wanted};
 use lancer_core::scene::{PrimitiveId, Scene, Subset};
 use obvhs::BvhBuildParams;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::node::Bvh2Node;
 use obvhs::cwbvh::builder::build_cwbvh;
+use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 use obvhs::cwbvh::node::CwBvhNode;
 
-use crate::binary_tree::Coverage;
+use crate::binary_tree::{BinaryTree, Coverage, TreeNode};
 use crate::four_boxes::{FourBoxes, FourSlabs, Frame, FrameBox};
-use crate::obvhs_bvh2::{ids, library_boxes};
+use crate::obvhs_bvh2::{has_many_equal, ids, library_boxes};
 use crate::pending::{Entered, Lanes, Pending};
 
 /// The compressed wide hierarchy that the obvhs library builds: eight children per node, their boxes on
 /// a grid of 256 steps over the node's.
 ///
-/// *Built* by the library, from a binary tree. As with [`crate::ObvhsBvh2`] only the tree is the library's.
+/// *Built* by the library, from a binary tree, which is as that of [`crate::ObvhsBvh2`]. As there only the tree is
+/// the library's.
 ///
 /// *Walked* near to far: every visit unpacks a node's boxes, and tests them four at a time.
 ///
@@ -37,6 +42,9 @@ pub struct ObvhsCwbvh<'s> {
 /// last place of the frame, and so may our unpacking: boxes are grown by more than that before.
 const MARGIN: f32 = 8.0 * f32::EPSILON;
 
+/// The most primitives of a leaf that the format has room for.
+const MAX_LEAF: u32 = 3;
+
 impl<'s> ObvhsCwbvh<'s> {
     /// Builds the tree.
     pub fn build(primitives: impl Into<Subset<'s>>) -> Self {
@@ -46,8 +54,32 @@ impl<'s> ObvhsCwbvh<'s> {
         if boxes.is_empty() {
             return Self { scene, frame, nodes: Vec::new(), primitives: Vec::new() };
         }
+        if has_many_equal(&boxes) {
+            return Self::collapsed(&BinaryTree::of_single_primitives(&all));
+        }
         let tree = build_cwbvh(&boxes, BvhBuildParams::medium_build(), &mut Default::default());
         Self { scene, frame, nodes: tree.nodes, primitives: ids(&all, tree.primitive_indices) }
+    }
+
+    /// The library's wide tree of a binary one.
+    fn collapsed(tree: &BinaryTree<'s>) -> Self {
+        let node = |node: &TreeNode| {
+            let FrameBox { min, max } = node.bounds.grown(MARGIN);
+            Bvh2Node::new(Aabb::new(min, max), node.count, node.first)
+        };
+        let binary = Bvh2 {
+            nodes: tree.nodes.iter().map(node).collect(),
+            primitive_indices: (0..tree.primitives.len() as u32).collect(),
+            ..Bvh2::default()
+        };
+        let wide = bvh2_to_cwbvh(&binary, MAX_LEAF, true, false);
+        let primitive = |&place: &u32| tree.primitives[place as usize];
+        Self {
+            scene: tree.scene,
+            frame: tree.frame,
+            nodes: wide.nodes,
+            primitives: wide.primitive_indices.iter().map(primitive).collect(),
+        }
     }
 
     /// Bytes held by the index, without the scene it borrows.
@@ -159,6 +191,24 @@ mod tests {
     fn unpacked_boxes_contain_their_primitives() {
         for (name, scene) in hard_sets(1000) {
             assert_eq!(ObvhsCwbvh::build(&scene).validate(&scene), Ok(()), "{name}");
+        }
+    }
+
+    /// The library's tree of equal boxes is a chain, as deep as a seventh of the triangles.
+    #[test]
+    fn trees_of_equal_boxes_are_balanced() {
+        fn depth(tree: &ObvhsCwbvh<'_>, node: &CwBvhNode) -> usize {
+            let inner = Lanes::<8>(u32::from(node.imask));
+            let child = |slot| &tree.nodes[node.child_node_index(slot) as usize];
+            1 + inner.map(|slot| depth(tree, child(slot))).max().unwrap_or(0)
+        }
+        for (name, scene) in hard_sets(20_000) {
+            if ["points", "identical"].contains(&name) {
+                let tree = ObvhsCwbvh::build(&scene);
+                let depth = depth(&tree, &tree.nodes[0]);
+                assert!(depth < 20, "{name}: {depth}");
+                assert_eq!(tree.validate(&scene), Ok(()), "{name}");
+            }
         }
     }
 }

@@ -272,10 +272,10 @@ impl Walker<'_> {
                 }),
             ])
         });
-        let step = Step::new(0, 0, headline).line(row(titles));
+        let step = Step::new(0, 0, headline).row(row(titles));
         let met = self.expected.map(|hit| hit.primitive);
         let drawn = draw::primitives(self.view, self.scene, met.as_slice(), draw::hit());
-        self.steps.push(rows.fold(step, Step::line).clears().draws(drawn));
+        self.steps.push(rows.fold(step, Step::row).clears().draws(drawn));
     }
 
     /// What a primitive is called.

@@ -51,6 +51,7 @@ pub struct Step {
     depth: usize,
     headline: String,
     lines: Vec<String>,
+    table: Vec<String>,
     opens: bool,
     returns: Option<Color>,
     clears: bool,
@@ -66,6 +67,7 @@ impl Step {
             depth,
             headline: headline.into(),
             lines: Vec::new(),
+            table: Vec::new(),
             opens: false,
             returns: None,
             clears: false,
@@ -77,6 +79,13 @@ impl Step {
     /// With one more line of text.
     pub fn line(mut self, line: impl Into<String>) -> Self {
         self.lines.push(line.into());
+        self
+    }
+
+    /// With one more row of a table below the lines: its columns are aligned by spaces, and it is never
+    /// broken.
+    pub fn row(mut self, row: impl Into<String>) -> Self {
+        self.table.push(row.into());
         self
     }
 
@@ -127,7 +136,7 @@ impl Walk {
         for step in &self.steps {
             let indent = "  ".repeat(step.depth);
             text += &format!("\n{indent}{}\n", step.headline);
-            for line in &step.lines {
+            for line in step.lines.iter().chain(&step.table) {
                 text += &format!("{indent}    {line}\n");
             }
         }
@@ -152,7 +161,12 @@ pub(crate) mod tests {
         let steps = vec![
             Step::new(0, 0, "call 1 <script>").line("a & b").opens().draws(ray),
             Step::new(1, 1, "call 2").opens().points_out(ray),
-            Step::new(1, 1, "call 2 returns").line("1").line("2").returns(Color::rgb(1, 2, 3)),
+            Step::new(1, 1, "call 2 returns")
+                .line("1")
+                .line("2")
+                .row("a  b")
+                .row("3 <4")
+                .returns(Color::rgb(1, 2, 3)),
             Step::new(0, 0, "call 1 returns").returns(Color::WHITE).clears().draws(ray),
         ];
         Walk {
@@ -187,7 +201,7 @@ pub(crate) mod tests {
     #[test]
     fn text_is_indented_by_depth() {
         let text = "An <algorithm>\nwith 'settings'\n\ncall 1 <script>\n    a & b\n\n  call 2\n\n  \
-                    call 2 returns\n      1\n      2\n\ncall 1 returns\n";
+                    call 2 returns\n      1\n      2\n      a  b\n      3 <4\n\ncall 1 returns\n";
         assert_eq!(sample().to_text(), text);
     }
 }

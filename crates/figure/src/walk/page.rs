@@ -53,7 +53,7 @@ pub(super) fn html(walk: &Walk) -> String {
     let count = walk.steps.len();
     let mut html = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width\">\n<title>{title}</title>\n\
+         <meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>{title}</title>\n\
          <style>\n{STYLE}</style>\n</head>\n<body>\n<svg class=\"glyphs\">{}</svg>\n\
          <header><h1>{title}</h1><p>{}</p></header>\n\
          <nav><button type=\"button\" id=\"back\" aria-label=\"back\">◀</button>\
@@ -65,28 +65,28 @@ pub(super) fn html(walk: &Walk) -> String {
     );
     let _ = writeln!(
         html,
-        "<figure class=\"drawing\">\n{}<figcaption>{}{}</figcaption></figure>",
+        "<div class=\"seen\">\n<figure class=\"drawing\">\n{}<figcaption>{}{}</figcaption></figure>",
         drawing.to_svg(),
         escape(&walk.backdrop.name),
         walk.legend.iter().map(legend).collect::<String>(),
     );
-    let width = tree.canvas.width();
-    let _ = writeln!(
-        html,
-        "<div class=\"tree\"><div style=\"max-width:{width:.0}px;min-width:{:.0}px\">\n{}</div></div>",
-        0.6 * width,
-        tree.to_svg()
-    );
-    let sections = walk.steps.iter().zip(1..).map(section).collect::<String>();
-    let _ = writeln!(html, "</main>\n<div class=\"below\"><div class=\"text\">\n{sections}</div>");
     let _ = writeln!(
         html,
         "<figure class=\"picture\"><img alt=\"\" src=\"data:image/png;base64,{}\">\
-         <figcaption>{}</figcaption></figure>",
+         <figcaption>{}</figcaption></figure>\n</div>",
         base64(&picture.to_png()),
         escape(caption)
     );
-    let _ = writeln!(html, "</div>\n<script>\n{SCRIPT}</script>\n</body>\n</html>");
+    let sections = walk.steps.iter().zip(1..).map(section).collect::<String>();
+    let _ = writeln!(html, "<div class=\"said\">\n<div class=\"text\">\n{sections}</div>");
+    let width = tree.canvas.width();
+    let _ = writeln!(
+        html,
+        "<div class=\"tree\"><div style=\"max-width:{width:.0}px;min-width:{:.0}px\">\n{}</div></div>\n</div>",
+        0.6 * width,
+        tree.to_svg()
+    );
+    let _ = writeln!(html, "</main>\n<script>\n{SCRIPT}</script>\n</body>\n</html>");
     html
 }
 
@@ -96,9 +96,13 @@ fn legend(&(name, color, dashed): &(&str, Color, bool)) -> String {
 }
 
 fn section((step, number): (&Step, usize)) -> String {
-    let Step { call, headline, lines, .. } = step;
+    let Step { call, headline, lines, table, .. } = step;
+    let table = match table.as_slice() {
+        [] => String::new(),
+        rows => format!("<pre class=\"table\">{}</pre>", escape(&rows.join("\n"))),
+    };
     format!(
-        "<section data-from=\"{number}\" data-to=\"{number}\" data-call=\"{call}\"><h2>{}</h2><pre>{}</pre></section>\n",
+        "<section data-from=\"{number}\" data-to=\"{number}\" data-call=\"{call}\"><h2>{}</h2><pre>{}</pre>{table}</section>\n",
         escape(headline),
         escape(&lines.join("\n"))
     )
@@ -158,7 +162,10 @@ fn css(color: Color) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use super::super::tests::sample;
+    use super::*;
 
     #[test]
     fn everything_is_escaped_and_nothing_comes_from_elsewhere() {
@@ -187,6 +194,84 @@ mod tests {
         }
         assert!(html.contains("fill=\"#010203\""), "the colour of an answer");
         assert!(html.contains("max=\"4\""));
+    }
+
+    /// Rows stay whole, however long: they are in a box of their own that scrolls.
+    #[test]
+    fn a_table_is_not_wrapped() {
+        let html = sample().to_html();
+        assert!(html.contains("<pre>1\n2</pre><pre class=\"table\">a  b\n3 &lt;4</pre></section>"));
+        assert_eq!(html.matches("class=\"table\"").count(), 1);
+        assert!(rule("pre.table").contains("white-space:pre;overflow-x:auto"));
+    }
+
+    /// What a selector's rule says, outside of all conditions.
+    fn rule(selector: &str) -> &'static str {
+        let found = STYLE.lines().find_map(|line| line.strip_prefix(selector)?.strip_prefix('{'));
+        found.and_then(|rest| rest.split('}').next()).unwrap_or_else(|| panic!("{selector}"))
+    }
+
+    /// The colours of a `:root{…}`, by name.
+    fn colors(root: &str) -> BTreeMap<&str, Color> {
+        let values = root.split([';', '{', '}']).filter_map(|value| value.split_once(":#"));
+        let parse = |hex: &str| {
+            let digits: String = match hex.len() {
+                3 => hex.chars().flat_map(|digit| [digit, digit]).collect(),
+                _ => hex.to_owned(),
+            };
+            let [_, r, g, b] = u32::from_str_radix(&digits, 16).unwrap().to_be_bytes();
+            Color::rgb(r, g, b)
+        };
+        values.map(|(name, hex)| (name.trim_start_matches("--"), parse(hex))).collect()
+    }
+
+    /// By the Web Content Accessibility Guidelines 2.2, 1.4.3: at least 4.5 to 1, by day and by night.
+    #[test]
+    fn text_is_readable_in_both_themes() {
+        let light = colors(STYLE.lines().find(|line| line.starts_with(":root")).unwrap());
+        let night =
+            STYLE.lines().find(|line| line.starts_with("@media(prefers-color-scheme:dark)"));
+        let mut dark = light.clone();
+        dark.extend(colors(night.unwrap()));
+        for (theme, colors) in [("light", &light), ("dark", &dark)] {
+            let pairs = [("ink", "page"), ("muted", "page"), ("accent", "page")];
+            for (text, ground) in pairs.into_iter().chain([("sheet-muted", "sheet")]) {
+                let [a, b] = [colors[text], colors[ground]].map(|c| c.luminance() + 0.05);
+                let contrast = f64::max(a / b, b / a);
+                assert!(contrast >= 4.5, "{theme}: {text} on {ground} {contrast:.2}");
+            }
+            // The drawings' own colours are made for white.
+            assert_eq!(colors["sheet"], Color::WHITE, "{theme}");
+        }
+        assert!(light["page"].luminance() > 0.9 && dark["page"].luminance() < 0.05);
+        // No colour stands elsewhere, so that no theme can forget one.
+        let rest = STYLE.lines().filter(|line| !line.contains(":root"));
+        assert!(rest.clone().all(|line| !line.contains('#')), "a colour that no theme changes");
+        assert!(rest.clone().all(|line| !line.contains("color:w") && !line.contains("color:b")));
+    }
+
+    /// At 390 px everything is in one column that may shrink; what cannot shrink scrolls by itself.
+    #[test]
+    fn a_narrow_page_stacks_and_fits() {
+        assert!(sample().to_html().contains("content=\"width=device-width,initial-scale=1\""));
+        let (narrow, wide) = STYLE.split_once("@media(min-width:900px)").unwrap();
+        assert!(rule("main").contains("grid-template-columns:minmax(0,1fr)"));
+        assert!(
+            rule("nav").contains("flex-wrap:wrap") && rule("nav input").contains("min-width:0")
+        );
+        assert!(rule(".tree").contains("overflow:auto"), "a wide tree scrolls");
+        assert!(rule(".picture img").contains("max-width:100%"));
+        assert!(rule("body").contains("overflow-wrap:anywhere"), "no word is wider than the page");
+        for declaration in narrow.split([';', '{', '}']) {
+            let width =
+                declaration.strip_prefix("width:").or(declaration.strip_prefix("min-width:"));
+            let px = width.and_then(|width| width.strip_suffix("px"));
+            assert!(px.is_none_or(|px| px.parse::<f64>().unwrap() <= 360.0), "{declaration}");
+        }
+        // At 1280×800 nothing is below the fold: rows share the window's height and shrink.
+        let main = wide.lines().find(|line| line.starts_with("main{")).unwrap();
+        assert!(wide.contains("body{height:100vh") && main.contains("minmax(0,1fr)/"), "{main}");
+        assert!(wide.contains(".text{order:0;overflow:auto}"));
     }
 
     #[test]
