@@ -8,6 +8,12 @@ use lancer_exercise::{Failure, Report};
 
 const RIGHT: Subject = SUBJECT;
 
+/// An answer, and some of the words that it must be told.
+type Case<F> = (F, &'static str);
+type PrimaryRay = fn(&Camera, ImageSize, f64, f64) -> Ray;
+type RayTriangle = fn([DVec3; 3], &Ray) -> Option<Meeting>;
+type RefractedRay = fn(DVec3, DVec3, f64, f64) -> Option<DVec3>;
+
 /// What a student reads: the words of the slip, or else the first counter-example.
 fn told(name: &str, subject: Subject) -> String {
     let exercise = COURSE.exercises.iter().find(|exercise| exercise.card.name == name).unwrap();
@@ -53,7 +59,7 @@ fn level(_: &Camera, up: DVec3) -> DVec3 {
 
 #[test]
 fn primary_rays() {
-    let cases: [(fn(&Camera, ImageSize, f64, f64) -> Ray, &str); 7] = [
+    let cases: [Case<PrimaryRay>; 7] = [
         (|c, s, x, y| seen(c, s, [x, y], tangent, ratio, level), "None"),
         (
             |c, s, x, y| seen(c, s, [x, y], |fov| fov.to_radians().tan(), ratio, level),
@@ -113,7 +119,7 @@ fn met(corners: [DVec3; 3], ray: &Ray, tolerance: f64, nearest: f64) -> Option<M
 
 #[test]
 fn triangles() {
-    let cases: [(fn([DVec3; 3], &Ray) -> Option<Meeting>, &str); 3] = [
+    let cases: [Case<RayTriangle>; 3] = [
         (|corners, ray| met(corners, ray, 0.0, 0.0), "None"),
         (|corners, ray| met(corners, ray, 1e-9, 0.0), "compared with a tolerance"),
         (|corners, ray| met(corners, ray, 0.0, 1e-3), "hits near the ray's origin are left out"),
@@ -141,7 +147,7 @@ fn the_local_model() {
 
 #[test]
 fn refracted_rays() {
-    let cases: [(fn(DVec3, DVec3, f64, f64) -> Option<DVec3>, &str); 3] = [
+    let cases: [Case<RefractedRay>; 3] = [
         (
             |v, n, n1, n2| {
                 let (eta, c1) = (n1 / n2, v.dot(-n));
