@@ -68,13 +68,30 @@ pub fn run<S: Copy + Send + Sync + 'static>(course: &'static Course<S>, subject:
     exit(i32::from(!is_right))
 }
 
-fn status<S: Copy + Send>(
-    course: &Course<S>,
-    exercise: &Exercise<S>,
+fn status<S: Copy + Send + Sync + 'static>(
+    course: &'static Course<S>,
+    exercise: &'static Exercise<S>,
     subject: S,
 ) -> (String, bool) {
-    let state = Report::of(exercise, subject, course.reference).state();
+    let state = judged(course, exercise, subject).state();
     (format!("{}\n", state.name()), state == State::Passing)
+}
+
+/// What the checks find and, once they pass, the picture: what `show` calls wrong is not right, unless the
+/// functions of another exercise are to blame.
+fn judged<S: Copy + Send + Sync + 'static>(
+    course: &'static Course<S>,
+    exercise: &'static Exercise<S>,
+    subject: S,
+) -> Report {
+    let mut report = Report::of(exercise, subject, course.reference);
+    if report.state() == State::Passing
+        && let Outcome::Failed(failure) = picture(course, exercise, subject)
+        && first_wrong(course, subject, |_| true).is_none()
+    {
+        report.outcomes.push(("its picture", Outcome::Failed(failure)));
+    }
+    report
 }
 
 impl State {
@@ -95,14 +112,7 @@ fn check<S: Copy + Send + Sync + 'static>(
     all: bool,
 ) -> (String, bool) {
     let card = exercise.card;
-    let mut report = Report::of(exercise, subject, course.reference);
-    // What `show` calls wrong is not right, unless the functions of another exercise are to blame.
-    if report.state() == State::Passing
-        && let Outcome::Failed(failure) = picture(course, exercise, subject)
-        && first_wrong(course, subject, |_| true).is_none()
-    {
-        report.outcomes.push(("its picture", Outcome::Failed(failure)));
-    }
+    let report = judged(course, exercise, subject);
     let mut text = title(&card);
     for (name, outcome) in &report.outcomes {
         match outcome {
@@ -348,8 +358,10 @@ mod tests {
         assert!(is_right && text.contains("Compare with ours: "), "{text}");
         // Wrong in two pixels of its picture, which no check looks at.
         let almost: fn(u32) -> u32 = |x| if x == 40 || x == 41 { 0 } else { x * x };
-        let (text, is_right) = said(square, Subject { square: almost, ..COURSE.reference });
+        let subject = Subject { square: almost, ..COURSE.reference };
+        let (text, is_right) = said(square, subject);
         assert!(!is_right && text.contains("✗ its picture"), "{text}");
+        assert_eq!(status(&COURSE, square, subject), ("wrong\n".to_owned(), false));
         assert!(text.contains("2 of 64 pixels differ"), "{text}");
         // The same where another exercise's function is to blame, which its own check catches.
         let wrong: fn(u32) -> u32 = |x| 2 * x;
