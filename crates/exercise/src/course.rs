@@ -23,7 +23,7 @@ pub struct Exercise<S: 'static> {
     pub slips: &'static [Slip<S>],
     /// A picture drawn by the subject's functions.
     pub draw: fn(&S) -> Image,
-    /// What happened at one pixel of that picture, for whoever looks for the first wrong one.
+    /// What happened at one pixel of that picture, where most of it is wrong.
     pub explain: Option<fn(&S, [u32; 2]) -> String>,
 }
 
@@ -59,6 +59,14 @@ impl Card {
     pub fn file(&self) -> String {
         let number = self.id.rsplit('.').next().unwrap_or_default();
         format!("e{number:0>2}_{}.rs", self.name.replace('-', "_"))
+    }
+
+    /// Whether the student's file calls functions of another exercise's, `use crate::yours::…`.
+    pub fn calls(&self, other: &Self) -> bool {
+        let uses = self.stub.lines().filter_map(|line| line.strip_prefix("use crate::yours::"));
+        let mut words =
+            uses.flat_map(|names| names.split(|c: char| !(c.is_alphanumeric() || c == '_')));
+        words.any(|word| other.functions.contains(&word))
     }
 }
 

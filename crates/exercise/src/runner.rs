@@ -11,8 +11,8 @@ use std::time::Duration;
 use lancer_core::image::write_atomically;
 
 use crate::judge::Outcome;
-use crate::show::compare;
-use crate::{Card, Course, Exercise, Failure, Report, State};
+use crate::show::{Comparison, compare};
+use crate::{Card, Course, Exercise, Failure, Mismatch, Report, State};
 
 /// No picture of an exercise takes more than a second with right functions.
 const DRAWING: Duration = Duration::from_secs(60);
@@ -68,13 +68,30 @@ pub fn run<S: Copy + Send + Sync + 'static>(course: &'static Course<S>, subject:
     exit(i32::from(!is_right))
 }
 
-fn status<S: Copy + Send>(
-    course: &Course<S>,
-    exercise: &Exercise<S>,
+fn status<S: Copy + Send + Sync + 'static>(
+    course: &'static Course<S>,
+    exercise: &'static Exercise<S>,
     subject: S,
 ) -> (String, bool) {
-    let state = Report::of(exercise, subject, course.reference).state();
+    let state = judged(course, exercise, subject).state();
     (format!("{}\n", state.name()), state == State::Passing)
+}
+
+/// What the checks find and, once they pass, the picture: what `show` calls wrong is not right, unless the
+/// functions of another exercise are to blame.
+fn judged<S: Copy + Send + Sync + 'static>(
+    course: &'static Course<S>,
+    exercise: &'static Exercise<S>,
+    subject: S,
+) -> Report {
+    let mut report = Report::of(exercise, subject, course.reference);
+    if report.state() == State::Passing
+        && let Outcome::Failed(failure) = picture(course, exercise, subject)
+        && first_wrong(course, subject, |_| true).is_none()
+    {
+        report.outcomes.push(("its picture", Outcome::Failed(failure)));
+    }
+    report
 }
 
 impl State {
@@ -88,14 +105,14 @@ impl State {
     }
 }
 
-fn check<S: Copy + Send>(
-    course: &Course<S>,
-    exercise: &Exercise<S>,
+fn check<S: Copy + Send + Sync + 'static>(
+    course: &'static Course<S>,
+    exercise: &'static Exercise<S>,
     subject: S,
     all: bool,
 ) -> (String, bool) {
     let card = exercise.card;
-    let report = Report::of(exercise, subject, course.reference);
+    let report = judged(course, exercise, subject);
     let mut text = title(&card);
     for (name, outcome) in &report.outcomes {
         match outcome {
@@ -124,7 +141,30 @@ fn check<S: Copy + Send>(
             None => line(&mut text, format_args!("\nA hint: cargo xtask exercise hint {name}")),
         },
     }
+    if report.state() != State::Unwritten
+        && let Some(Card { id, name, .. }) = first_wrong(course, subject, |other| card.calls(other))
+    {
+        line(
+            &mut text,
+            format_args!(
+                "\nIt calls your {id}, which is not right: cargo xtask exercise check {name}"
+            ),
+        );
+    }
     (text, report.state() == State::Passing)
+}
+
+/// The first of some exercises whose functions are not right.
+fn first_wrong<S: Copy + Send>(
+    course: &Course<S>,
+    subject: S,
+    among: impl Fn(&Card) -> bool,
+) -> Option<Card> {
+    let mut chosen = course.exercises.iter().filter(|exercise| among(&exercise.card));
+    let is_wrong = |exercise: &&Exercise<S>| {
+        Report::of(exercise, subject, course.reference).state() != State::Passing
+    };
+    chosen.find(is_wrong).map(|exercise| exercise.card)
 }
 
 fn title(card: &Card) -> String {
@@ -155,55 +195,178 @@ fn describe(text: &mut String, file: &str, failure: &Failure) {
     }
 }
 
+/// What `judge` says of the student's picture and the reference's, unless drawing them panics or does not end.
+fn drawn<S: Copy + Send + Sync + 'static, T: Send + 'static>(
+    course: &'static Course<S>,
+    exercise: &'static Exercise<S>,
+    subject: S,
+    judge: impl FnOnce(&Comparison) -> T + Send + 'static,
+) -> Result<T, Failure> {
+    let (sender, receiver) = mpsc::channel();
+    thread::spawn(move || {
+        let judged = catch_unwind(AssertUnwindSafe(|| {
+            let (yours, reference) =
+                ((exercise.draw)(&subject), (exercise.draw)(&course.reference));
+            judge(&compare(exercise, &yours, &reference))
+        }));
+        // Whoever waits may have left.
+        let _ = sender.send(judged.map_err(|panic| Failure::of_panic(&*panic)));
+    });
+    receiver.recv_timeout(DRAWING).unwrap_or(Err(Failure::Endless))
+}
+
+/// Whether the student's picture is the reference's.
+fn picture<S: Copy + Send + Sync + 'static>(
+    course: &'static Course<S>,
+    exercise: &'static Exercise<S>,
+    subject: S,
+) -> Outcome {
+    let difference = drawn(course, exercise, subject, |comparison| {
+        comparison.worst.map(|_| comparison.plate.claim().to_owned())
+    });
+    match difference {
+        Ok(None) => Outcome::Passed,
+        Ok(Some(claim)) => {
+            let name = exercise.card.name;
+            let case = format!("the picture of: cargo xtask exercise show {name}");
+            Outcome::Failed(Failure::Wrong(Mismatch::new(case, claim, "the reference's picture")))
+        }
+        Err(failure) => Outcome::Failed(failure),
+    }
+}
+
 fn show<S: Copy + Send + Sync + 'static>(
     course: &'static Course<S>,
     exercise: &'static Exercise<S>,
     subject: S,
     file: &str,
 ) -> (String, bool) {
-    let (sender, receiver) = mpsc::channel();
-    let drawing = move || {
-        let drawn = catch_unwind(AssertUnwindSafe(|| {
-            let (yours, reference) =
-                ((exercise.draw)(&subject), (exercise.draw)(&course.reference));
-            let comparison = compare(exercise, &yours, &reference);
-            let explained = exercise.explain.zip(comparison.first_wrong).map(|(explain, pixel)| {
-                format!(
-                    "\nThe reference there:\n{}\nYours there:\n{}",
-                    explain(&course.reference, pixel),
-                    explain(&subject, pixel)
-                )
-            });
-            let canvas = comparison.plate.canvas();
-            (
-                comparison.plate.claim().to_owned() + &explained.unwrap_or_default(),
-                canvas.to_png(1.0),
-                comparison.first_wrong.is_none(),
+    let comparison = drawn(course, exercise, subject, move |comparison| {
+        let explained = exercise.explain.zip(comparison.worst).map(|(explain, pixel)| {
+            format!(
+                "\nThe reference there:\n{}\nYours there:\n{}",
+                explain(&course.reference, pixel),
+                explain(&subject, pixel)
             )
-        }));
-        // Whoever waits may have left.
-        let _ = sender.send(drawn);
-    };
-    thread::spawn(drawing);
+        });
+        let said = comparison.plate.claim().to_owned() + &explained.unwrap_or_default();
+        (said, comparison.plate.canvas().to_png(1.0), comparison.worst.is_none())
+    });
     let mut text = title(&exercise.card);
-    match receiver.recv_timeout(DRAWING) {
-        Ok(Ok((claim, png, is_right))) => match write_atomically(file, &png) {
-            Ok(()) => {
-                line(&mut text, format_args!("{claim}\nThe plate is in {file}"));
-                return (text, is_right);
-            }
-            Err(error) => line(&mut text, format_args!("{error}")),
-        },
-        Ok(Err(panic)) => {
-            let failure = Failure::of_panic(&*panic);
+    let (said, png, is_right) = match comparison {
+        Ok(comparison) => comparison,
+        Err(failure) => {
             describe(&mut text, &exercise.card.file(), &failure);
+            return (text, false);
         }
-        Err(_) => describe(&mut text, &exercise.card.file(), &Failure::Endless),
+    };
+    if let Err(error) = write_atomically(file, &png) {
+        line(&mut text, format_args!("{error}"));
+        return (text, false);
     }
-    (text, false)
+    line(&mut text, format_args!("{said}"));
+    let own = Report::of(exercise, subject, course.reference).state();
+    if !is_right
+        && own == State::Passing
+        && let Some(Card { id, name, .. }) = first_wrong(course, subject, |_| true)
+    {
+        line(
+            &mut text,
+            format_args!(
+                "Its own checks pass; your {id} may be to blame, which is not right: cargo xtask exercise check {name}"
+            ),
+        );
+    }
+    line(&mut text, format_args!("The plate is in {file}"));
+    (text, is_right)
 }
 
 fn line(text: &mut String, content: std::fmt::Arguments<'_>) {
     // Writing to a string cannot fail.
     let _ = writeln!(text, "{content}");
+}
+
+#[cfg(test)]
+mod tests {
+    use lancer_core::image::{Image, ImageSize};
+
+    use super::*;
+    use crate::{Check, Solution, same};
+
+    #[derive(Clone, Copy)]
+    struct Subject {
+        square: fn(u32) -> u32,
+        fourth: fn(u32) -> u32,
+    }
+
+    const fn card(id: &'static str, name: &'static str, stub: &'static str) -> Card {
+        let solution = Solution { answer: "", file: "", item: "", notice: "" };
+        let hints = [""; 3];
+        Card {
+            id,
+            name,
+            title: "",
+            slide: "",
+            stub,
+            functions: if id.len() == 4 { &["square"] } else { &["fourth"] },
+            minutes: 1,
+            predict: "",
+            vary: "",
+            hints,
+            solution,
+        }
+    }
+
+    /// A row of 64 pixels.
+    fn row(function: impl Fn(u32) -> u32) -> Image {
+        let pixels = (0..64).map(|x| [function(x) as f32; 3]).collect();
+        Image::from_pixels(ImageSize::new(64, 1), pixels)
+    }
+
+    static COURSE: Course<Subject> = Course {
+        package: "chapter-9",
+        exercises: &[
+            Exercise {
+                card: card("E9.1", "square", ""),
+                checks: &[Check {
+                    name: "3 squared",
+                    run: |subject| same(String::new, &(subject.square)(3), &9),
+                }],
+                slips: &[],
+                draw: |subject| row(subject.square),
+                explain: None,
+            },
+            Exercise {
+                card: card("E9.10", "fourth", "use crate::yours::square;\n"),
+                checks: &[Check {
+                    name: "1 to the fourth",
+                    run: |subject| same(String::new, &(subject.fourth)(1), &1),
+                }],
+                slips: &[],
+                draw: |subject| row(|x| (subject.fourth)((subject.square)(x))),
+                explain: None,
+            },
+        ],
+        reference: Subject { square: |x| x * x, fourth: |x| x * x * x * x },
+    };
+
+    #[test]
+    fn a_picture_that_differs_is_not_right_whatever_the_checks_say() {
+        let [square, fourth] = COURSE.exercises else { unreachable!() };
+        let said = |exercise, subject| check(&COURSE, exercise, subject, false);
+        let (text, is_right) = said(square, COURSE.reference);
+        assert!(is_right && text.contains("Compare with ours: "), "{text}");
+        // Wrong in two pixels of its picture, which no check looks at.
+        let almost: fn(u32) -> u32 = |x| if x == 40 || x == 41 { 0 } else { x * x };
+        let subject = Subject { square: almost, ..COURSE.reference };
+        let (text, is_right) = said(square, subject);
+        assert!(!is_right && text.contains("✗ its picture"), "{text}");
+        assert_eq!(status(&COURSE, square, subject), ("wrong\n".to_owned(), false));
+        assert!(text.contains("2 of 64 pixels differ"), "{text}");
+        // The same where another exercise's function is to blame, which its own check catches.
+        let wrong: fn(u32) -> u32 = |x| 2 * x;
+        let (text, is_right) = said(fourth, Subject { square: wrong, ..COURSE.reference });
+        assert!(is_right, "{text}");
+        assert!(text.contains("It calls your E9.1, which is not right"), "{text}");
+    }
 }

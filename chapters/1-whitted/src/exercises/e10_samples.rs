@@ -59,6 +59,12 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         "the sum is divided by n: there are n × n samples":
             "a linear radiance is averaged exactly" catches
                 f64::from(n) * pixel_mean(film, x, y, n);
+        "all samples are in one place: i / n of whole numbers is 0 for every i, so convert both by `f64::from` before \
+         dividing":
+            "a linear radiance is averaged exactly" catches {
+                let first = 0.5 / f64::from(n);
+                pixel_mean(&|_, _| film(f64::from(x) + first, f64::from(y) + first), x, y, n)
+            };
         "only the cells of the diagonal have a sample: one loop is not enough":
             "n × n samples" catches diagonal(film, x, y, n);
 

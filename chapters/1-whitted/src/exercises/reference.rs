@@ -1,4 +1,5 @@
-//! The right answers: the chapter's solutions, each of which is a student's file.
+//! The right answers: the chapter's solutions, each of which is a student's file. `tests/solutions.rs` compares them
+//! with the course's own code.
 
 #[path = "../../solutions/e01_primary_ray.rs"]
 mod e01_primary_ray;

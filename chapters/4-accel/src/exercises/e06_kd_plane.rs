@@ -129,12 +129,9 @@ fn compare(subject: &Subject, [split, origin, direction]: [f64; 3], wanted: Side
         }
         _ => got == wanted,
     };
-    // −0 is a direction of its own.
-    let sign = if direction == 0.0 && direction.is_sign_negative() { "−" } else { "" };
     let [split, origin, direction] = [split, origin, direction].map(|x| x.shown());
     let inside = part(INSIDE);
-    let case =
-        format!("plane at {split}, origin {origin}, direction {sign}{direction}, t from {inside}");
+    let case = format!("plane at {split}, origin {origin}, direction {direction}, t from {inside}");
     ensure(is_right, || Mismatch::new(case, text(got), text(wanted)))
 }
 
