@@ -5,11 +5,15 @@ use chapter_1::exercises::prelude::*;
 /// Where a ray meets a triangle, from either side: t, and the weights of the corners a, b and c there.
 ///
 /// - `corners`: a, b and c, in any order of rotation.
-/// - `ray`: its direction has any length; t is in units of it.
+/// - `ray`: the points `ray.origin + t * ray.direction`. The direction has any length; t is in units of it.
 ///
-/// The answer is `None` unless t > 0 and finite. The weights are at least 0 and add up to 1: they are the
-/// share of each corner in the point. A ray through an edge or a corner *meets* the triangle, so that none
-/// slips between neighbours; a ray in the triangle's plane does not.
+/// The answer is `Some((t, weights))`, a `Meeting` (in chapters/1-whitted/src/exercises/mod.rs), or `None`
+/// unless t > 0 and finite; t may be as small as it likes. The weights, a `DVec3`, are at least 0 and add up
+/// to 1: they are the share of each corner in the point.
+///
+/// A ray through an edge or a corner *meets* the triangle, so that none slips between neighbours. A ray in
+/// the triangle's plane does not: there U, V and W are rounding noise, whose signs may agree by chance. So
+/// demand besides that 0 is neither below nor above the x of all three sheared corners, nor the y of all.
 pub fn ray_triangle(corners: [DVec3; 3], ray: &Ray) -> Option<Meeting> {
     let [a, b, c] = corners.map(|corner| sheared(corner, ray));
     todo!("E1.2: the signs of the edge functions of a, b and c, then t")

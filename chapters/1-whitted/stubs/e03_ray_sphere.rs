@@ -5,10 +5,11 @@ use chapter_1::exercises::prelude::*;
 /// A difference F·F − r² below this share of the sum F·F + r² is rounding noise: count it as 0.
 const NOISE: f64 = 1e-15;
 
-/// The smallest t > 0 at which a ray meets a sphere, from outside or from inside.
+/// The smallest t > 0 at which a ray meets a sphere, from outside or from inside: `Some(t)`, or `None`.
 ///
-/// - `sphere.center`, `sphere.radius` (greater than 0).
-/// - `ray`: its direction has any length; t is in units of it.
+/// - `sphere.center`, a `DVec3`, and `sphere.radius`, greater than 0 (crates/core/src/geometry/sphere.rs).
+/// - `ray.origin`, `ray.direction`: the direction has any length; t is in units of it, and may be as small
+///   as it likes.
 ///
 /// A ray that just touches the sphere meets it. A ray that starts on the sphere, up to [`NOISE`], does not
 /// meet it there. The answer has all its digits also when the sphere is a million radii away.

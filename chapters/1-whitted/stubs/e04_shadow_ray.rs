@@ -2,7 +2,9 @@
 
 use chapter_1::exercises::prelude::*;
 
-/// The ray from a point of a surface to a lamp, which it reaches at t = 1.
+/// The ray from a point of a surface to a lamp, which it reaches at t = 1: `Ray::new(origin, lamp - origin)`.
+///
+/// A `SurfacePoint` (crates/core/src/world.rs) is what is known of the point; vectors are `DVec3`:
 ///
 /// - `surface.position`: the point, as computed; its rounding left it on either side of the true surface.
 /// - `surface.error`: per coordinate, how far that may be. The true point is in the box

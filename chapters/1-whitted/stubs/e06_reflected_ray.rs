@@ -2,10 +2,10 @@
 
 use chapter_1::exercises::prelude::*;
 
-/// The direction in which a mirror sends on what arrives along `incident`.
+/// The direction R in which a mirror sends on what arrives along `incident`; a `DVec3` is three `f64`.
 ///
 /// - `incident`: unit, towards the surface (the V of the slide's formula).
-/// - `n`: the unit normal; it may stand on either side.
+/// - `n`: the unit normal N; it may stand on either side.
 ///
 /// The answer is unit and leads away from the surface.
 pub fn reflected_ray(incident: DVec3, n: DVec3) -> DVec3 {

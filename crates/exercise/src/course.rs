@@ -9,7 +9,7 @@ pub struct Course<S: 'static> {
     pub package: &'static str,
     /// The exercises.
     pub exercises: &'static [Exercise<S>],
-    /// The chapter's own code.
+    /// The right answers.
     pub reference: S,
 }
 
@@ -23,7 +23,7 @@ pub struct Exercise<S: 'static> {
     pub slips: &'static [Slip<S>],
     /// A picture drawn by the subject's functions.
     pub draw: fn(&S) -> Image,
-    /// What happened at one pixel of that picture, for whoever looks for the first wrong one.
+    /// What happened at one pixel of that picture, where most of it is wrong.
     pub explain: Option<fn(&S, [u32; 2]) -> String>,
 }
 
@@ -50,7 +50,7 @@ pub struct Card {
     pub vary: &'static str,
     /// The idea, the formula, almost the code.
     pub hints: [&'static str; 3],
-    /// Where the course's own answer stands.
+    /// The answer, and where the course's own code does the same.
     pub solution: Solution,
 }
 
@@ -60,12 +60,22 @@ impl Card {
         let number = self.id.rsplit('.').next().unwrap_or_default();
         format!("e{number:0>2}_{}.rs", self.name.replace('-', "_"))
     }
+
+    /// Whether the student's file calls functions of another exercise's, `use crate::yours::…`.
+    pub fn calls(&self, other: &Self) -> bool {
+        let uses = self.stub.lines().filter_map(|line| line.strip_prefix("use crate::yours::"));
+        let mut words =
+            uses.flat_map(|names| names.split(|c: char| !(c.is_alphanumeric() || c == '_')));
+        words.any(|word| other.functions.contains(&word))
+    }
 }
 
-/// An item of the course's code.
+/// A right answer, and the item of the course's code that does the same.
 #[derive(Clone, Copy, Debug)]
 pub struct Solution {
-    /// Its file, from the root of the repository.
+    /// A student's whole file that passes every check; the reference is made of it.
+    pub answer: &'static str,
+    /// The file of the course's item, from the root of the repository.
     pub file: &'static str,
     /// How its first line begins, `pub fn reflect`.
     pub item: &'static str,

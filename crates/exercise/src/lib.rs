@@ -1,8 +1,8 @@
 //! Exercises: functions that a student writes, checks that judge them, and the slips the checks know.
 //!
 //! A chapter's *subject* is a struct of plain function pointers, one for each function to be written. Its
-//! [`Course`] holds the reference (the chapter's own code) and, for each [`Exercise`], the pristine stub,
-//! the [`Check`]s, and [`Slip`]s: what makes the reference wrong in one plausible way. Slips prove that the checks
+//! [`Course`] holds the reference (the right answers, as a student would write them) and, for each [`Exercise`], the
+//! pristine stub, the [`Check`]s, and [`Slip`]s: what makes the reference wrong in one plausible way. Slips prove that the checks
 //! can fail ([`Course::prove_checks`]), and when a student's answer behaves as the reference with a slip does, its
 //! words say which one it is.
 //!

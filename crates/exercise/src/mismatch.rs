@@ -1,4 +1,5 @@
 use std::fmt;
+use std::ops::Range;
 
 use glam::DVec3;
 use lancer_core::geometry::Ray;
@@ -48,7 +49,8 @@ impl Shown for f64 {
     fn shown(&self) -> String {
         let (magnitude, value) = (self.abs(), *self);
         match magnitude {
-            0.0 => "0".to_owned(),
+            // A direction of −0 is not one of 0.
+            0.0 => if value.is_sign_negative() { "-0" } else { "0" }.to_owned(),
             1e-3..1e6 => {
                 let digits = (5.0 - magnitude.log10().floor()).max(0.0) as usize;
                 let text = format!("{value:.digits$}");
@@ -136,6 +138,21 @@ macro_rules! shown_exactly {
 
 shown_exactly!(bool, u32, u64, usize);
 
+/// How far numbers about as large as 1 are off where an `f32` has rounded them.
+const ROUNDING_OF_F32: Range<f64> = 1e-9..1e-5;
+
+/// A result as it is compared: −0 equals 0 there.
+fn unsigned_zeros(shown: &str) -> String {
+    let mut parts = shown.split("-0");
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let is_longer = part.starts_with(|c: char| c == '.' || c.is_ascii_digit());
+        text += if is_longer { "-0" } else { "0" };
+        text += part;
+    }
+    text
+}
+
 /// Whether something holds that an answer promises.
 ///
 /// # Errors
@@ -156,11 +173,13 @@ pub fn within<T: Shown>(
 ) -> Verdict {
     let distance = got.distance(wanted);
     ensure(distance <= tolerance, || {
-        let (got, mut wanted) = (got.shown(), wanted.shown());
+        let (got, mut wanted) = (unsigned_zeros(&got.shown()), unsigned_zeros(&wanted.shown()));
         // Where six digits do not tell them apart, the difference does.
         if got == wanted {
-            let (tolerance, distance) = (tolerance.shown(), distance.shown());
-            wanted += &format!(", to {tolerance}; this is off by {distance}");
+            wanted += &format!(", to {}; this is off by {}", tolerance.shown(), distance.shown());
+            if ROUNDING_OF_F32.contains(&distance) {
+                wanted += ": is there an `f32` on the way?";
+            }
         }
         Mismatch::new(case(), got, wanted)
     })
@@ -184,6 +203,25 @@ mod tests {
             [0.0, 1.0, -0.5, 1.0 / 3.0, 123_456.7, 2e-5, 1e9, f64::INFINITY].map(|n| n.shown());
         let wanted = ["0", "1", "-0.5", "0.333333", "123457", "2.00000e-5", "1.00000e9", "inf"];
         assert_eq!(shown, wanted);
+    }
+
+    /// An input tells −0 from 0, as the function that takes it does; results are compared as numbers.
+    #[test]
+    fn a_negative_zero_is_shown_in_an_input_alone() {
+        let direction = DVec3::new(-0.0, 0.5, -0.025);
+        assert_eq!(direction.shown(), "(-0, 0.5, -0.025)");
+        let off = within(1e-9, || direction.shown(), &direction, &DVec3::ONE).unwrap_err();
+        assert_eq!((&*off.case, &*off.got), ("(-0, 0.5, -0.025)", "(0, 0.5, -0.025)"));
+        assert_eq!(same(String::new, &-0.0, &0.0), Ok(()));
+    }
+
+    #[test]
+    fn what_an_f32_has_rounded_is_said_to_be() {
+        let rounded = f64::from((1.0 / 3.0) as f32);
+        let off = within(1e-12, String::new, &rounded, &(1.0 / 3.0)).unwrap_err();
+        assert!(off.wanted.ends_with("off by 9.93411e-9: is there an `f32` on the way?"), "{off}");
+        let off = within(1e-15, String::new, &1.0, &(1.0 + 1e-12)).unwrap_err();
+        assert!(!off.wanted.contains("f32"), "{off}");
     }
 
     #[test]

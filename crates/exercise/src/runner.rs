@@ -114,7 +114,7 @@ fn check<S: Copy + Send>(
         State::Passing => line(
             &mut text,
             format_args!(
-                "\nRight. See it: cargo xtask exercise show {name}\nThen: {}\nThe course's own answer: cargo xtask exercise solution {name}",
+                "\nRight. See it: cargo xtask exercise show {name}\nThen: {}\nCompare with ours: cargo xtask exercise solution {name}",
                 card.vary
             ),
         ),
@@ -123,6 +123,20 @@ fn check<S: Copy + Send>(
             Some(slip) => line(&mut text, format_args!("\nThis looks like a known slip: {slip}")),
             None => line(&mut text, format_args!("\nA hint: cargo xtask exercise hint {name}")),
         },
+    }
+    if report.state() != State::Unwritten {
+        let called = course.exercises.iter().filter(|other| card.calls(&other.card));
+        for other in called {
+            if Report::of(other, subject, course.reference).state() != State::Passing {
+                let Card { id, name, .. } = other.card;
+                line(
+                    &mut text,
+                    format_args!(
+                        "\nIt calls your {id}, which is not right: cargo xtask exercise check {name}"
+                    ),
+                );
+            }
+        }
     }
     (text, report.state() == State::Passing)
 }
@@ -167,7 +181,7 @@ fn show<S: Copy + Send + Sync + 'static>(
             let (yours, reference) =
                 ((exercise.draw)(&subject), (exercise.draw)(&course.reference));
             let comparison = compare(exercise, &yours, &reference);
-            let explained = exercise.explain.zip(comparison.first_wrong).map(|(explain, pixel)| {
+            let explained = exercise.explain.zip(comparison.worst).map(|(explain, pixel)| {
                 format!(
                     "\nThe reference there:\n{}\nYours there:\n{}",
                     explain(&course.reference, pixel),
@@ -178,7 +192,7 @@ fn show<S: Copy + Send + Sync + 'static>(
             (
                 comparison.plate.claim().to_owned() + &explained.unwrap_or_default(),
                 canvas.to_png(1.0),
-                comparison.first_wrong.is_none(),
+                comparison.worst.is_none(),
             )
         }));
         // Whoever waits may have left.

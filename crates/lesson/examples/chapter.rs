@@ -103,7 +103,7 @@ fn make(effort: Effort) -> Finished {
     Finished { plate, data }
 }
 
-// An exercise, a file in `src/exercises/`, with its stub in `stubs/`.
+// An exercise, a file in `src/exercises/`, with its stub in `stubs/` and its answer in `solutions/`.
 
 #[derive(Clone, Copy)]
 struct Subject {
@@ -126,6 +126,7 @@ const EXERCISE: Exercise<Subject> = Exercise {
         vary: "square the answer: what happens to the rim?",
         hints: ["a cosine", "|N·V|", "`n.dot(to_eye)`, without its sign"],
         solution: Solution {
+            answer: "pub fn facing(n: DVec3, to_eye: DVec3) -> f64 {\n    n.dot(to_eye).abs()\n}\n",
             file: "crates/lesson/examples/chapter.rs",
             item: "fn facing",
             notice: "either side",

@@ -12,11 +12,12 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use clap::Subcommand;
+use lancer_exercise::Solution;
 
 use crate::repository::root;
 use build::shown;
 use catalogue::{Entry, entries, find};
-use solution::item;
+use solution::line_of;
 use student::{Checked, State, Student};
 use workspace::Workspace;
 
@@ -71,7 +72,7 @@ enum Action {
     },
     /// Draws your picture beside the course's; succeeds if they are the same
     Show(Choice),
-    /// Prints the course's own answer
+    /// Prints our answer, and where the course's own code does the same
     Solution(Choice),
     /// Puts the stub back; your file is kept as .bak
     Reset {
@@ -172,7 +173,7 @@ fn hint(choice: &Choice, n: usize) -> Result<()> {
     let card = entry.card;
     say!("{}, hint {n} of 3: {}", entry.title(), card.hints[n - 1]);
     match n {
-        3 => say!("The course's own answer: cargo xtask exercise solution {}", card.name),
+        3 => say!("The answer: cargo xtask exercise solution {}", card.name),
         _ => say!("More: cargo xtask exercise hint {} -n {}", card.name, n + 1),
     }
     Ok(())
@@ -181,19 +182,19 @@ fn hint(choice: &Choice, n: usize) -> Result<()> {
 fn solution(choice: &Choice) -> Result<()> {
     let mut student = Student::open()?;
     let Some(entry) = chosen(choice, &mut student)? else { return Ok(()) };
-    let answer = entry.card.solution;
-    let source = std::fs::read_to_string(root().join(answer.file))
-        .with_context(|| format!("cannot read {}", answer.file))?;
-    let found = item(&source, answer.item)
-        .with_context(|| format!("there is no `{}` in {}", answer.item, answer.file))?;
+    let Solution { answer, file, item, notice } = entry.card.solution;
+    let source = std::fs::read_to_string(root().join(file))
+        .with_context(|| format!("cannot read {file}"))?;
+    let line = line_of(&source, item).with_context(|| format!("there is no `{item}` in {file}"))?;
     let path = shown(&student.workspace().path(&entry));
     match student.state(&entry)? {
         State::Passing => say!("{}: yours is in {path}", entry.title()),
         State::New => say!("{}: you have not begun this one", entry.title()),
         _ => say!("{}: yours, in {path}, does not pass yet", entry.title()),
     }
-    say!("The course's is in {}:{}\n\n{}\n", answer.file, found.line, found.text);
-    say!("Notice: {}", answer.notice);
+    say!("Ours, a whole file that could stand in its place:\n\n{answer}");
+    say!("The course's own code does the same in {file}:{line}, `{item}`");
+    say!("Notice: {notice}");
     Ok(())
 }
 

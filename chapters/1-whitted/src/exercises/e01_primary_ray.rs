@@ -38,6 +38,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              the three parts, `.normalize()`, and `Ray::new(camera.eye, …)`.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e01_primary_ray.rs"),
             file: "crates/core/src/scene/camera.rs",
             item: "impl PrimaryRays",
             notice: "the corner, the step to the right and the step down are worked out once per picture, so \
@@ -68,9 +69,14 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         "the whole opening angle is taken: the film's half height is the tangent of half of it":
             "the middle of the upper edge" catches
                 zoomed(camera, camera.fov.to_radians().tan(), size, x, y);
+        "the film's height is 2 tan(fov/2), not tan(fov): the tangent of a whole angle is not twice that of half of it":
+            "the middle of the upper edge" catches
+                zoomed(camera, 0.5 * camera.fov.to_radians().tan(), size, x, y);
         "the opening angle is in degrees, and the tangent wants radians: `to_radians()`":
             "the middle of the upper edge" catches
                 zoomed(camera, (0.5 * camera.fov).tan(), size, x, y);
+        "the tangent is taken of the whole opening angle, and in degrees: it wants half of it, in radians":
+            "the middle of the upper edge" catches zoomed(camera, camera.fov.tan(), size, x, y);
         "the film is twice too small: from the middle to the edge it is tan(fov/2), from edge to edge twice that":
             "the middle of the upper edge" catches
                 zoomed(camera, 0.5 * tan_half(camera), size, x, y);
@@ -91,6 +97,12 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                 let (forward, up) = (forward(camera), camera.up.normalize());
                 through(camera, [forward, forward.cross(up).normalize(), up], size, x, y)
             };
+        "camera.up is used as it comes: it is neither unit nor perpendicular to the view axis, so the film's own up \
+         is right × forward":
+            "a turned camera, by hand" catches {
+                let forward = forward(camera);
+                through(camera, [forward, right(camera), camera.up], size, x, y)
+            };
         "forward × up is not made unit: camera.up need not be perpendicular to the view axis":
             "a turned camera, by hand" catches {
                 let forward = forward(camera);
@@ -110,6 +122,12 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
             "odd numbers of pixels" catches {
                 let dropped = |pixels: u32| 0.5 * f64::from(pixels % 2);
                 primary_ray(camera, size, x + dropped(size.width), y + dropped(size.height))
+            };
+        "the picture's shape is a whole number: width / height of whole numbers drops what is left over, so convert \
+         both by `f64::from` before dividing":
+            "a turned camera, by hand" catches {
+                let shape = f64::from(size.width / size.height);
+                squeezed(camera, shape * height(size) / width(size), size, x, y)
             };
         "the ray starts in look_at: it starts in the eye":
             "the middle of the picture" catches
@@ -170,8 +188,12 @@ fn through(camera: &Camera, frame: [DVec3; 3], size: ImageSize, x: f64, y: f64) 
     Ray::new(camera.eye, (forward + pixel * aside).normalize())
 }
 
-/// Along −z with y up: the film at distance 1 is 2 high and 4 wide.
-const PLAIN: Camera = Camera { eye: DVec3::ZERO, look_at: DVec3::NEG_Z, up: DVec3::Y, fov: 90.0 };
+/// 2 atan(3/4) in degrees: the film at distance 1 is 1.5 high. At 90 degrees tan(fov), a beginner's slip, would be
+/// as good as infinite, and what is printed of it rounding noise.
+const FOV: f64 = 73.739_795_291_688_04;
+
+/// Along −z with y up.
+const PLAIN: Camera = Camera { eye: DVec3::ZERO, look_at: DVec3::NEG_Z, up: DVec3::Y, fov: FOV };
 /// Two rows of four pixels.
 const WIDE: (u32, u32) = (4, 2);
 
@@ -181,7 +203,7 @@ const TURNED: Camera = Camera {
     eye: DVec3::new(1.0, -2.0, 3.0),
     look_at: DVec3::new(5.0, 4.0, 15.0),
     up: DVec3::new(-1.0, 9.0, 4.0),
-    fov: 90.0,
+    fov: FOV,
 };
 
 fn compare(
@@ -212,29 +234,28 @@ fn middle(subject: &Subject) -> Verdict {
 }
 
 fn upper_edge(subject: &Subject) -> Verdict {
-    let up_and_ahead = DVec3::new(0.0, 1.0, -1.0) / 2.0_f64.sqrt();
-    compare(subject, &PLAIN, WIDE, (2.0, 0.0), up_and_ahead)
+    compare(subject, &PLAIN, WIDE, (2.0, 0.0), DVec3::new(0.0, 0.6, -0.8))
 }
 
 fn right_edge(subject: &Subject) -> Verdict {
     // The film is as far from its middle to the right edge as it is high.
-    let right_and_ahead = DVec3::new(2.0, 0.0, -1.0) / 5.0_f64.sqrt();
+    let right_and_ahead = DVec3::new(3.0, 0.0, -2.0) / 13.0_f64.sqrt();
     compare(subject, &PLAIN, WIDE, (4.0, 1.0), right_and_ahead)
 }
 
-/// tan(fov/2) = 3/4: a pixel's side is 3/4 with two rows.
+/// tan(fov/2) = 2/5: a pixel's side is 2/5 with two rows.
 fn opening_angle(subject: &Subject) -> Verdict {
-    let fov = 2.0 * 0.75_f64.atan().to_degrees();
+    let fov = 2.0 * 0.4_f64.atan().to_degrees();
     let camera = Camera { fov, look_at: DVec3::new(0.0, 0.0, -10.0), ..PLAIN };
     // The centre of a pixel: from the middle half a pixel to the left and half a one up.
-    let direction = DVec3::new(-0.375, 0.375, -1.0).normalize();
+    let direction = DVec3::new(-0.2, 0.2, -1.0).normalize();
     compare(subject, &camera, WIDE, (1.5, 0.5), direction)
 }
 
-/// A pixel's side is 1/3 with six rows: (7, 2) is one to the right and 1/3 up on a film eight pixels wide.
-/// (2, 3, 6) + (−6, −2, 3) + (−3, 6, −2)/3 = (−5, 3, 25/3), which is (−15, 9, 25)/3.
+/// A pixel's side is 1/4 with six rows: (7, 2) is 3/4 to the right and 1/4 up on a film eight pixels wide.
+/// 4 (2, 3, 6) + 3 (−6, −2, 3) + (−3, 6, −2) = (−13, 12, 31), of length 7 √(4² + 3² + 1).
 fn turned(subject: &Subject) -> Verdict {
-    let direction = DVec3::new(-15.0, 9.0, 25.0) / 931.0_f64.sqrt();
+    let direction = DVec3::new(-13.0, 12.0, 31.0) / 1274.0_f64.sqrt();
     compare(subject, &TURNED, (8, 6), (7.0, 2.0), direction)
 }
 

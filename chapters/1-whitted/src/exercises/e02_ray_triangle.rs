@@ -45,6 +45,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              `(t > 0.0 && t.is_finite()).then(|| (t, DVec3::new(u, v, w) / det))`.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e02_ray_triangle.rs"),
             file: "crates/core/src/geometry/triangle.rs",
             item: "pub fn intersect_triangle",
             notice: "the shear is worked out once per ray, and t must exceed a bound of its own error, which \
@@ -56,7 +57,9 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "in space, a direction of any length", run: in_space },
         Check { name: "either side, either order of rotation", run: other_side },
         Check { name: "beside the triangle", run: beside },
+        Check { name: "just beside the triangle", run: just_beside },
         Check { name: "behind the ray", run: behind },
+        Check { name: "very close to where the ray starts", run: close },
         Check { name: "exactly through an edge or a corner", run: exact_borders },
         Check { name: "a very small triangle", run: small },
         Check { name: "a ray in the triangle's plane", run: in_plane },
@@ -92,6 +95,13 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
             "behind the ray" catches
                 ray_triangle(corners, ray)
                     .or_else(|| ray_triangle(corners, &reversed(ray)).map(|(t, w)| (-t, w)));
+        "hits near the ray's origin are left out: any t > 0 counts, however small, since t is in units of the \
+         direction's length and scenes may be tiny":
+            "very close to where the ray starts" catches
+                ray_triangle(corners, ray).filter(|(t, _)| *t > 1e-3);
+        "the edge functions are compared with a tolerance: rays beside the triangle meet it then, and a small \
+         triangle grows. 0 itself is the border; the sheared corners need no tolerance":
+            "just beside the triangle" catches tolerant(corners, ray, 1e-9);
         "an edge function of 0 counts as a miss: a ray through an edge then misses both neighbours":
             "exactly through an edge or a corner" catches
                 ray_triangle(corners, ray).filter(|(_, weights)| weights.min_element() > 0.0);
@@ -118,8 +128,8 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
          of the corners' x and y too":
             "a ray in the triangle's plane" catches
                 weighted(corners, ray, BySigns::new(ray).plain(corners));
-        "a NaN gets through: `if t <= 0.0 { return None }` is false for it. Accept what is right instead of \
-         rejecting what is wrong: `(t > 0.0 && t.is_finite()).then(…)`":
+        "a NaN gets through: each comparison with it is false, also the one that should reject it. Accept what is \
+         right instead: `(t > 0.0 && t.is_finite()).then(…)`":
             "no number, no hit" catches
                 ray_triangle(corners, ray)
                     .or_else(|| det(corners, ray).is_nan().then_some((f64::NAN, DVec3::NAN)));
@@ -163,6 +173,17 @@ fn weighted(corners: [DVec3; 3], ray: &Ray, t: Option<f64>) -> Option<Meeting> {
     let ([a, b, c], n, p) = (corners, normal(corners), ray.at(t?));
     let share = |from: DVec3, to: DVec3| (to - from).cross(p - from).dot(n) / n.length_squared();
     Some((t?, DVec3::new(share(b, c), share(c, a), share(a, b))))
+}
+
+/// The right answer, and where the signs of U, V and W are wrong by less than a tolerance, where the ray meets the
+/// plane.
+fn tolerant(corners: [DVec3; 3], ray: &Ray, tolerance: f64) -> Option<Meeting> {
+    let nearly = || {
+        let meeting = weighted(corners, ray, plane(corners, ray))?;
+        let least = meeting.1.min_element() * det(corners, ray).abs();
+        (least >= -tolerance).then_some(meeting)
+    };
+    ray_triangle(corners, ray).or_else(nearly)
 }
 
 fn case([a, b, c]: [DVec3; 3], ray: &Ray) -> String {
@@ -236,6 +257,26 @@ fn beside(subject: &Subject) -> Verdict {
         }
     }
     Ok(())
+}
+
+/// By 2⁻⁴⁰ beyond the longest edge, which is in the range of the corners' x and y: U is 2⁻³⁶, and exact in its sign.
+fn just_beside(subject: &Subject) -> Verdict {
+    let [a, b, c] = FLAT;
+    let aside = 4.0 + 0.5_f64.powi(40);
+    for corners in [FLAT, [b, c, a], [c, a, b], [a, c, b]] {
+        misses(subject, "beyond an edge by 10⁻¹²", corners, &down(aside, aside))?;
+    }
+    // A tenth of its width beside a triangle that is small itself.
+    let ray = Ray::new(DVec3::new(5e-12, 5e-12, 3.0), DVec3::NEG_Z);
+    misses(subject, "8e-12 wide", FLAT.map(|corner| 1e-12 * corner), &ray)
+}
+
+fn close(subject: &Subject) -> Verdict {
+    let height = 0.5_f64.powi(40);
+    let ray = Ray::new(DVec3::new(1.0, 2.0, height), DVec3::NEG_Z);
+    meets(subject, "10⁻¹² above it: ", FLAT, &ray, (height, WEIGHTS))?;
+    let ray = Ray::new(DVec3::new(1.0, 2.0, 3.0), DVec3::new(0.0, 0.0, -3.0 / height));
+    meets(subject, "a very long direction: ", FLAT, &ray, (height, WEIGHTS))
 }
 
 fn behind(subject: &Subject) -> Verdict {

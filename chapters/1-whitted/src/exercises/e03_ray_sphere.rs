@@ -40,6 +40,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              `[a.min(b), a.max(b)].into_iter().find(|t| *t > 0.0)`.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e03_ray_sphere.rs"),
             file: "crates/core/src/geometry/sphere.rs",
             item: "pub fn intersect",
             notice: "a ray that starts outside and does not approach is sent away before the root is taken, \
@@ -257,13 +258,13 @@ fn huge(subject: &Subject) -> Verdict {
     precise(subject, "rays that start 3 to 150 above a sphere of radius 7340032", cases)
 }
 
-/// The whole of [`aside`] 2⁻³⁰ times as large, but for the direction.
+/// The whole of [`aside`] 2⁻⁵⁰ times as large, but for the direction.
 fn tiny(subject: &Subject) -> Verdict {
     let (sphere, ray) = aside(10.0);
-    let size = 0.5_f64.powi(30);
+    let size = 0.5_f64.powi(50);
     let sphere = Sphere { center: size * sphere.center, radius: size * sphere.radius };
     let got = (subject.ray_sphere)(&sphere, &ray).map(|t| t / size);
-    within(1e-12, || case("t · 2³⁰", &sphere, &ray), &got, &Some(6.0))
+    within(1e-12, || case("t · 2⁵⁰", &sphere, &ray), &got, &Some(6.0))
 }
 
 /// Points of a sphere as they are rounded, and a direction for each: outwards, and back across the sphere.

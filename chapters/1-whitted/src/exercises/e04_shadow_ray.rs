@@ -38,6 +38,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              `Ray::new(origin, lamp - origin)`.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e04_shadow_ray.rs"),
             file: "crates/core/src/world.rs",
             item: "pub fn spawn_to",
             notice: "the move itself is `leave_surface`, which reflected and refracted rays use too; the error \

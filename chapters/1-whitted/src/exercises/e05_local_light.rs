@@ -28,14 +28,15 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
             "Two parts are added: a matte one, which depends on how the surface faces the lamp, and a glossy \
              one, which depends on how near the eye is to the mirror direction of the light. Neither can be \
              negative, and a surface that does not face the lamp gets nothing of it.",
-            "eq:local, one term: I · vis/d² · (ρ_d (N·L) + ρ_s (R·V)ⁿ), with N·L and R·V taken as 0 where they are \
-             negative, and R = 2 (N·L) N − L. If N·L ≤ 0 the whole term is 0.",
+            "eq:local, one term: I · vis/d² · (ρ_d (N·L) + ρ_s (R·V)ⁿ) with R = 2 (N·L) N − L. If N·L ≤ 0 the whole \
+             term is 0, highlight included; if R·V < 0 the highlight alone is.",
             "`let cos_light = n.dot(to_light);` and leave with `Rgb::ZERO` if the lamp is not visible or \
              `cos_light <= 0.0`. `let mirror = 2.0 * cos_light * n - to_light;` \
              `let highlight = mirror.dot(to_eye).max(0.0).powf(reflectance.shininess);` then the sum times \
              `intensity / (distance * distance)`.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e05_local_light.rs"),
             file: "crates/core/src/illumination.rs",
             item: "pub fn local",
             notice: "it is the bracket of eq:local: `lit`, below it, multiplies it by I · vis/d² and asks for vis last, \

@@ -26,6 +26,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
             "`n.dot(incident)` is N·V; take twice that many `n` away from `incident`.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e06_reflected_ray.rs"),
             file: "crates/core/src/optics.rs",
             item: "pub fn reflect",
             notice: "nothing is normalised: mirroring keeps the length, up to rounding",

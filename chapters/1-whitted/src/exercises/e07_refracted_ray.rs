@@ -26,12 +26,13 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         hints: [
             "Split V into a part along N and a part along the surface, of length sin θ₁. Descartes scales the \
              second; the first has what is left of length 1.",
-            "eq:descartes: T = η V + (η cos θ₁ − cos θ₂) N with η = n₁ / n₂, cos θ₁ = −N·V and \
+            "eq:descartes gives T = η V + (η cos θ₁ − cos θ₂) N with η = n₁ / n₂, cos θ₁ = −N·V and \
              cos² θ₂ = 1 − η² (1 − cos² θ₁). A negative cos² is total reflection.",
             "`let cos1 = -n.dot(incident);`, then `cos2_squared`; `None` if it is below 0, else \
              `Some(eta * incident + (eta * cos1 - cos2_squared.sqrt()) * n)`.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e07_refracted_ray.rs"),
             file: "crates/core/src/optics.rs",
             item: "pub fn refract",
             notice: "1 − cos² θ₁ is written (1 − cos θ₁)(1 + cos θ₁): near normal incidence the difference of \
@@ -61,6 +62,18 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         "the part along N has the wrong sign: T = η V − (η cos θ₁ − cos θ₂) N":
             "from air into water, by hand" catches
                 refracted_ray(v, n, n1, n2).map(|t| 2.0 * (n1 / n2) * v - t);
+        "+ cos θ₂ N in place of − cos θ₂ N: the answer leads back to the side that the ray comes from":
+            "equal indices: straight on" catches
+                refracted_ray(v, n, n1, n2).map(|_| along(v, n, n1 / n2, |cos2_squared| -cos2_squared.sqrt()));
+        "the root is missing: cos² θ₂ stands where cos θ₂ should":
+            "equal indices: straight on" catches
+                refracted_ray(v, n, n1, n2).map(|_| along(v, n, n1 / n2, |cos2_squared| cos2_squared));
+        "η is not squared: sin θ₂ = η sin θ₁, so cos² θ₂ = 1 − η² sin² θ₁":
+            "from air into water, by hand" catches {
+                let (eta, cos1) = (n1 / n2, -n.dot(v));
+                let cos2_squared = 1.0 - eta * (1.0 - cos1 * cos1);
+                (cos2_squared >= 0.0).then(|| eta * v + (eta * cos1 - cos2_squared.sqrt()) * n)
+            };
         "cos θ₁ is taken as N·V, which is negative here: N stands against the ray":
             "equal indices: straight on" catches
                 refracted_ray(v, n, n1, n2).map(|t| t + 2.0 * (n1 / n2) * n.dot(v) * n);

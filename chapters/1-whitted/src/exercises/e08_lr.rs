@@ -9,7 +9,9 @@ use lancer_exercise::{Card, Check, Exercise, Shown, Solution, Verdict, slips, wi
 use lancer_lesson::scenes::parsed;
 use lancer_whitted::{RayEnd, RayNode};
 
-use super::{Lit, Stage, Subject, from_eye, painted, reference, title_rays};
+use super::{
+    FAR_MIRROR, Lit, Stage, Subject, far_mirror, from_eye, painted, reference, title_rays,
+};
 use crate::scenes;
 
 pub const EXERCISE: Exercise<Subject> = Exercise {
@@ -39,6 +41,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              ray.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e08_lr.rs"),
             file: "crates/whitted/src/trace.rs",
             item: "fn at_surface",
             notice: "no ray is traced for a share of 0, `Branches` in crates/core/src/optics.rs chooses n₁, n₂ and what \
@@ -55,6 +58,10 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "a plate that glows on one side", run: emission },
         Check { name: "a mirror shows the plate", run: mirror },
         Check { name: "two mirrors face each other", run: facing_mirrors },
+        Check { name: "a mirror far from the origin", run: far_from_origin },
+        Check { name: "a mirror in a tiny scene", run: tiny },
+        Check { name: "a smooth floor under a lamp", run: smooth_floor },
+        Check { name: "a smooth mirror", run: smooth_mirror },
         Check { name: "through a pane", run: pane },
         Check { name: "a ball of index 1 is not there", run: no_ball },
         Check { name: "into a glass ball and out of it", run: glass_ball },
@@ -86,8 +93,32 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         "every surface is entered: where the ray leaves the glass, n₁ and n₂ change places":
             "into a glass ball and out of it" catches
                 slipped(LrSlip::AlwaysEntering, stage, ray, depth);
+        "n₁ and n₂ are exchanged: a ray that enters goes from 1 to the material's index":
+            "into a glass ball and out of it" catches
+                slipped(LrSlip::SwappedIndices, stage, ray, depth);
         "at total reflection the share k_t is lost: it goes to the mirror ray":
             "total reflection" catches slipped(LrSlip::LostShare, stage, ray, depth);
+        "k_s and k_t are exchanged: k_s is the share of the mirror ray, k_t of the refracted one":
+            "a mirror shows the plate" catches
+                slipped(LrSlip::SwappedShares, stage, ray, depth);
+        "the depth grows by 2: each call is one bounce further than the one that makes it":
+            "two mirrors face each other" catches slipped(LrSlip::TwoDeeper, stage, ray, depth);
+        "rays start at `surface.position` as it comes: rounding left that point on either side of the surface, and half \
+         of the rays meet it again; `surface.spawn(direction)` leaves it":
+            "a mirror far from the origin" catches
+                slipped(LrSlip::NoSpawn, stage, ray, depth);
+        "rays start a fixed way ahead: what is nearer than that is not seen; `surface.spawn(direction)` leaves the \
+         surface by what rounding needs":
+            "a mirror in a tiny scene" catches slipped(LrSlip::Offset, stage, ray, depth);
+        "the lamps see the geometric normal: a smooth mesh looks faceted; N for the lamps is \
+         `shading_normal_towards`":
+            "a smooth floor under a lamp" catches
+                slipped(LrSlip::FlatLamps, stage, ray, depth);
+        "the mirror ray is made by the normal for the lamps, which can send it through the surface; \
+         `optical_normal` cannot":
+            "a smooth mirror" catches slipped(LrSlip::LampsNormal, stage, ray, depth);
+        "the mirror ray is made by the geometric normal: a smooth mesh mirrors in facets; take `optical_normal`":
+            "a smooth mirror" catches slipped(LrSlip::FlatMirror, stage, ray, depth);
     },
     draw,
     explain: Some(explain),
@@ -105,7 +136,15 @@ enum LrSlip {
     NoShadows,
     TowardsSurface,
     AlwaysEntering,
+    SwappedIndices,
     LostShare,
+    SwappedShares,
+    TwoDeeper,
+    NoSpawn,
+    Offset,
+    FlatLamps,
+    LampsNormal,
+    FlatMirror,
 }
 
 /// LR with one slip.
@@ -127,7 +166,9 @@ fn slipped(slip: LrSlip, stage: &Stage, ray: &Ray, depth: u32) -> Rgb {
     if slip != LrSlip::NoEmission && (is_outside || slip == LrSlip::TwoSided) {
         radiance += material.emission;
     }
-    let n = surface.shading_normal_towards(-incident);
+    let shading = surface.shading_normal_towards(-incident);
+    let geometric = if is_outside { surface.geometric_normal } else { -surface.geometric_normal };
+    let n = if slip == LrSlip::FlatLamps { geometric } else { shading };
     let to_eye = if slip == LrSlip::TowardsSurface { incident } else { -incident };
     for lamp in &stage.lamps {
         let shadow = reference::shadow_ray(&surface, lamp.position);
@@ -138,22 +179,44 @@ fn slipped(slip: LrSlip, stage: &Stage, ray: &Ray, depth: u32) -> Rgb {
         radiance += reference::local_light(&lit);
     }
     let sent = |k: Rgb, direction: DVec3| {
-        let depth = if slip == LrSlip::SameDepth { depth } else { depth + 1 };
+        let depth = match slip {
+            LrSlip::SameDepth => depth,
+            LrSlip::TwoDeeper => depth + 2,
+            _ => depth + 1,
+        };
+        let ray = match slip {
+            LrSlip::NoSpawn => Ray::new(surface.position, direction),
+            LrSlip::Offset => Ray::new(surface.position + 1e-3 * direction, direction),
+            _ => surface.spawn(direction),
+        };
         let share = if slip == LrSlip::NoShares { Rgb::ONE } else { k };
-        share * slipped(slip, stage, &surface.spawn(direction), depth)
+        share * slipped(slip, stage, &ray, depth)
     };
-    let (n, index) = (surface.optical_normal(incident), material.refractive_index);
-    let (n1, n2) =
-        if is_outside || slip == LrSlip::AlwaysEntering { (1.0, index) } else { (index, 1.0) };
-    let mut k_s = material.k_s;
+    let n = match slip {
+        LrSlip::LampsNormal => shading,
+        LrSlip::FlatMirror => geometric,
+        _ => surface.optical_normal(incident),
+    };
+    let index = material.refractive_index;
+    let is_entering =
+        (is_outside || slip == LrSlip::AlwaysEntering) != (slip == LrSlip::SwappedIndices);
+    let (n1, n2) = if is_entering { (1.0, index) } else { (index, 1.0) };
+    let (mut k_s, mut k_t) = (material.k_s, material.k_t);
+    if slip == LrSlip::SwappedShares {
+        (k_s, k_t) = (k_t, k_s);
+    }
+    let mut is_mirror = material.k_s != Rgb::ZERO;
     if material.k_t != Rgb::ZERO {
         match reference::refracted_ray(incident, n, n1, n2) {
-            Some(direction) => radiance += sent(material.k_t, direction),
+            Some(direction) => radiance += sent(k_t, direction),
             None if slip == LrSlip::LostShare => (),
-            None => k_s += material.k_t,
+            None => {
+                k_s += k_t;
+                is_mirror = true;
+            }
         }
     }
-    if k_s != Rgb::ZERO {
+    if is_mirror {
         radiance += sent(k_s, reference::reflected_ray(incident, n));
     }
     radiance
@@ -169,8 +232,18 @@ fn compare(
     max_depth: u32,
     wanted: Rgb,
 ) -> Verdict {
-    let scene = parsed("exercise", text);
-    let got = (subject.lr)(&Stage::new(&scene, max_depth, reference::SUBJECT), &ray, 0);
+    compare_in(subject, &parsed("exercise", text), words, ray, max_depth, wanted)
+}
+
+fn compare_in(
+    subject: &Subject,
+    scene: &Scene,
+    words: &str,
+    ray: Ray,
+    max_depth: u32,
+    wanted: Rgb,
+) -> Verdict {
+    let got = (subject.lr)(&Stage::new(scene, max_depth, reference::SUBJECT), &ray, 0);
     within(1e-10, || format!("{words}; {}, Max_Prof {max_depth}", ray.shown()), &got, &wanted)
 }
 
@@ -314,6 +387,77 @@ fn facing_mirrors(subject: &Subject) -> Verdict {
     Ok(())
 }
 
+/// A ray that does not leave the mirror by the error of its point meets it once more.
+fn far_from_origin(subject: &Subject) -> Verdict {
+    let (text, rays) = far_mirror();
+    let wanted = Rgb::new(0.1, 0.075, 0.05);
+    rays.into_iter().try_for_each(|ray| compare(subject, &text, FAR_MIRROR, ray, 5, wanted))
+}
+
+/// [`mirror`] a millionth as large.
+fn tiny(subject: &Subject) -> Verdict {
+    let text = format!(
+        "polygon = [
+            {{ vertices = [[3e-6, 3e-6, -1e-6], [3e-6, 3e-6, 1e-6], [3e-6, 5e-6, 1e-6], [3e-6, 5e-6, -1e-6]],
+                material = 'plate' }},
+            {{ vertices = [[-1e-6, 0, 1e-6], [1e-6, 0, 1e-6], [1e-6, 0, -1e-6], [-1e-6, 0, -1e-6]],
+                material = 'mirror' }}]
+        {PLATE}"
+    );
+    let words = "a mirror y = 0, k_s = (0.5, 0.25, 1), shows a plate around (3e-6, 4e-6, 0), ε = (2, 4, 0.5)";
+    let ray = Ray::new(DVec3::new(-3e-6, 4e-6, 0.0), DVec3::new(0.6, -0.8, 0.0));
+    compare(subject, &text, words, ray, 5, GLOW * Rgb::new(0.5, 0.25, 1.0))
+}
+
+/// What a text begins its polygons with.
+const SMOOTH: &str = "vertices = [[-4, 0, 0], [4, 0, 3], [4, 0, -3]]";
+const SMOOTH_WORDS: &str = "a smooth triangle (−4, 0, 0), (4, 0, 3), (4, 0, −3), whose vertex normals (0.96, 0.28, 0), y \
+                            and y make N = (0.6, 0.8, 0) at the origin";
+
+/// A scene whose first triangle is [`SMOOTH`]. The origin is in the middle between its first corner and the others, so
+/// N there is half of (0.96, 0.28, 0) and half of y; it is above no corner's tangent plane, so nothing is lifted.
+fn smooth(text: &str) -> Scene {
+    let mut scene = parsed("exercise", text);
+    let mesh = &mut scene.mesh;
+    let normal = |p: &DVec3| if p.x < 0.0 { DVec3::new(0.96, 0.28, 0.0) } else { DVec3::Y };
+    mesh.normals = mesh.positions.iter().map(normal).collect();
+    mesh.smooth = vec![None; mesh.triangles.len()];
+    mesh.smooth[0] = Some(mesh.triangles[0].vertices);
+    scene
+}
+
+/// 8 / 2² from straight above, with the cosine 4/5.
+fn smooth_floor(subject: &Subject) -> Verdict {
+    let text = format!(
+        "light = [{{ position = [0, 2, 0], intensity = 8 }}]
+        material.floor = {{ rho_d = [0.5, 0.25, 1] }}
+        polygon = [{{ {SMOOTH}, material = 'floor' }}]"
+    );
+    let words = format!("{SMOOTH_WORDS}, ρ_d = (0.5, 0.25, 1), under a lamp of 8 at (0, 2, 0)");
+    compare_in(subject, &smooth(&text), &words, to_origin(), 5, 1.6 * DIFFUSE)
+}
+
+/// Straight down R is (0.96, 0.28, 0) by N. At a slant it would be (0.936, −0.352, 0), below the surface: there the
+/// geometric normal makes it (0.6, 0.8, 0).
+fn smooth_mirror(subject: &Subject) -> Verdict {
+    let text = format!(
+        "polygon = [{{ {SMOOTH}, material = 'mirror' }},
+            {{ vertices = [[3, 0.5, -1], [3, 0.5, 1], [3, 5, 1], [3, 5, -1]], material = 'plate' }}]
+        {PLATE}"
+    );
+    let words = format!(
+        "{SMOOTH_WORDS}, k_s = (0.5, 0.25, 1), before a plate x = 3, 0.5 < y < 5, ε = (2, 4, 0.5)"
+    );
+    let scene = smooth(&text);
+    for ray in [
+        Ray::new(DVec3::new(0.0, 4.0, 0.0), DVec3::NEG_Y),
+        Ray::new(DVec3::new(-3.0, 4.0, 0.0), DVec3::new(0.6, -0.8, 0.0)),
+    ] {
+        compare_in(subject, &scene, &words, ray, 5, GLOW * Rgb::new(0.5, 0.25, 1.0))?;
+    }
+    Ok(())
+}
+
 fn no_ball(subject: &Subject) -> Verdict {
     let text = "
         background = [0.2, 0.3, 0.4]
@@ -396,7 +540,7 @@ fn explain(subject: &Subject, [x, y]: [u32; 2]) -> String {
     let scene = scenes::whitted();
     let stage = |subject| Stage::new(&scene, MAX_DEPTH, subject);
     let ray = scene.camera.primary_rays(SIZE).through(f64::from(x) + 0.5, f64::from(y) + 0.5);
-    let tree = reference::recorded(&stage(reference::SUBJECT), &from_eye(ray));
+    let tree = stage(reference::SUBJECT).recorded(&from_eye(ray));
     let lines = tree.nodes.iter().map(|node| {
         let got = (subject.lr)(&stage(*subject), &node.call.ray, node.call.depth);
         let mark = if Shown::distance(&got, &node.radiance) > 1e-9 { "  ← differs" } else { "" };

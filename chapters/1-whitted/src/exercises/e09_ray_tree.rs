@@ -12,7 +12,9 @@ use lancer_lesson::scenes::parsed;
 use lancer_whitted::{RayCounts, RayKind};
 
 use super::reference::ray_tree;
-use super::{Node, Stage, Subject, from_eye, painted, reference, title_rays};
+use super::{
+    FAR_MIRROR, Node, Stage, Subject, far_mirror, from_eye, painted, reference, title_rays,
+};
 use crate::scenes;
 
 pub const EXERCISE: Exercise<Subject> = Exercise {
@@ -38,6 +40,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              Push what it returns for `RayKind::Refracted`, then for `RayKind::Mirror`.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e09_ray_tree.rs"),
             file: "crates/whitted/src/ray_tree.rs",
             item: "impl Recorder for RayTree",
             notice: "there is no second recursion: the tree is recorded while LR runs, so it cannot differ from it",
@@ -48,6 +51,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "a ray that meets nothing is one node", run: miss },
         Check { name: "shadow rays go to the lamps in front", run: lamps },
         Check { name: "two mirrors make a chain", run: chain },
+        Check { name: "a mirror far from the origin", run: far_from_origin },
         Check { name: "a pane sends two rays", run: pane },
         Check { name: "total reflection sends one", run: total_reflection },
         Check { name: "a stack of panes makes a full tree", run: full_tree },
@@ -187,6 +191,14 @@ fn chain(subject: &Subject) -> Verdict {
         compare(subject, text, words, Ray::new(DVec3::ZERO, DVec3::X), max_depth, &wanted)?;
     }
     Ok(())
+}
+
+/// A ray that does not leave the mirror by the error of its point meets it once more.
+fn far_from_origin(subject: &Subject) -> Verdict {
+    let (text, rays) = far_mirror();
+    let mirror = traced(RayKind::Mirror, 1, 0.5, Vec::new());
+    let wanted = traced(RayKind::Primary, 0, 1.0, vec![mirror]);
+    rays.into_iter().try_for_each(|ray| compare(subject, &text, FAR_MIRROR, ray, 5, &wanted))
 }
 
 /// Panes z = 0, −1, −2, … on both sides of the first.

@@ -32,6 +32,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              the error, `(*a - *b).length_squared()` is the sum over a pixel's three channels.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e10_samples.rs"),
             file: "crates/core/src/sampling.rs",
             item: "pub fn some_of_pixel",
             notice: "the same grid beside two random layouts; `rmse` is in crates/core/src/metric/mod.rs",
@@ -58,6 +59,12 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         "the sum is divided by n: there are n × n samples":
             "a linear radiance is averaged exactly" catches
                 f64::from(n) * pixel_mean(film, x, y, n);
+        "all samples are in one place: i / n of whole numbers is 0 for every i, so convert both by `f64::from` before \
+         dividing":
+            "a linear radiance is averaged exactly" catches {
+                let first = 0.5 / f64::from(n);
+                pixel_mean(&|_, _| film(f64::from(x) + first, f64::from(y) + first), x, y, n)
+            };
         "only the cells of the diagonal have a sample: one loop is not enough":
             "n × n samples" catches diagonal(film, x, y, n);
 

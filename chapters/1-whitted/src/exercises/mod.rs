@@ -109,6 +109,32 @@ fn from_eye(ray: Ray) -> Call {
     Call { ray, depth: 0, weight: 1.0, kind: RayKind::Primary }
 }
 
+/// A small mirror a million times its size from the origin, and rays that come down onto it: rounding leaves the points
+/// that they meet above it or below.
+fn far_mirror() -> (String, Vec<Ray>) {
+    let place = DVec3::new(1e6, -7e5, 1.3e6);
+    let corners = [[2.1, 0.3, 1.7], [1.3, -0.4, -2.2], [-2.3, 0.2, 0.6]]
+        .map(|corner| place + DVec3::from(corner));
+    let vertices = corners.map(|DVec3 { x, y, z }| format!("[{x}, {y}, {z}]")).join(", ");
+    let text = format!(
+        "background = [0.2, 0.3, 0.4]
+        material.mirror = {{ k_s = [0.5, 0.25, 0.125] }}
+        polygon = [{{ vertices = [{vertices}], material = 'mirror' }}]"
+    );
+    let rays = (0..24).map(|k| {
+        let (turn, weight) = (f64::from(k), 0.1 + f64::from(k) / 30.0);
+        let [a, b, c] = corners;
+        let target = weight * a + (1.0 - weight) * b.lerp(c, (0.618 * turn).fract());
+        let from = DVec3::new(turn.cos(), 2.0, turn.sin());
+        Ray::new(target + from, -from.normalize())
+    });
+    (text, rays.collect())
+}
+
+/// What it is, in words.
+const FAR_MIRROR: &str = "a mirror 4 units wide and a million units from the origin, k_s = (0.5, 0.25, 0.125), \
+                          background (0.2, 0.3, 0.4)";
+
 /// Primary rays all over the title scene and their places in words, those with the fewest calls first: the
 /// simplest counter-example comes before the others.
 fn title_rays(max_depth: u32) -> (Scene, Vec<(String, Ray)>) {
@@ -124,7 +150,7 @@ fn title_rays(max_depth: u32) -> (Scene, Vec<(String, Ray)>) {
         .collect();
     rays.sort_by_cached_key(|(_, ray)| {
         let stage = Stage::new(&scene, max_depth, reference::SUBJECT);
-        reference::recorded(&stage, &from_eye(*ray)).nodes.len()
+        stage.recorded(&from_eye(*ray)).nodes.len()
     });
     (scene, rays)
 }

@@ -5,9 +5,9 @@ use lancer_core::geometry::{Interval, Ray};
 use lancer_core::illumination::Reflectance;
 use lancer_core::intersector::{Hit, Intersector, Observer, Query, Traversal, Wanted};
 use lancer_core::scene::{PointSource, Scene, Shape};
-use lancer_core::world::SurfacePoint;
+use lancer_core::world::{SurfacePoint, World};
 use lancer_exercise::Shown;
-use lancer_whitted::{Call, RayKind};
+use lancer_whitted::{AtLimit, Call, RayKind, RayTree, Settings, Whitted};
 
 use super::Subject;
 
@@ -45,6 +45,18 @@ impl<'a> Stage<'a> {
     /// vis(i): whether a shadow ray reaches its lamp, at t = 1.
     pub fn is_lit(&self, shadow_ray: &Ray) -> bool {
         !self.occluded(shadow_ray, Interval::up_to(1.0))
+    }
+
+    /// What the course's own LR calls from a call on, with depths and weights counted from it; nothing beyond
+    /// Max_Prof.
+    pub(super) fn recorded(&self, call: &Call) -> RayTree {
+        let mut tree = RayTree::default();
+        if let Some(max_depth) = self.max_depth.checked_sub(call.depth) {
+            let settings = Settings { max_depth, min_weight: 0.0, at_limit: AtLimit::Black };
+            let world = World { scene: self.scene, index: self };
+            Whitted::new(world, settings).trace(&call.ray, &mut tree);
+        }
+        tree
     }
 
     /// Ends a recursion that does not end, before it fills the stack.

@@ -37,6 +37,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              for the smaller far, `(last - o) * inverse * FAR`. A comparison with NaN is false.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e01_slab_test.rs"),
             file: "crates/core/src/geometry/bounds.rs",
             item: "pub fn cross",
             notice: "the near t is rounded down as well, for hits that round below it, and a reciprocal that \
@@ -239,15 +240,15 @@ fn out_of_range(subject: &Subject) -> Verdict {
     compare(subject, "the range ends before the box", ray, Interval::up_to(1.5), None)
 }
 
-/// The two zeros and their names, which differ by the sign only.
-const ZEROS: [(f64, &str); 2] = [(0.0, "0"), (-0.0, "−0")];
+/// The two zeros, which their sign tells apart.
+const ZEROS: [f64; 2] = [0.0, -0.0];
 
 fn parallel(subject: &Subject) -> Verdict {
-    for (zero, name) in ZEROS {
+    for zero in ZEROS {
         for (x, place, wanted) in
             [(5.0, "above", None), (1.0, "below", None), (3.0, "inside", Some(2.0))]
         {
-            let what = format!("direction.x = {name}, {place} the slab of x");
+            let what = format!("direction.x = {}, {place} the slab of x", zero.shown());
             compare(subject, &what, [[x, 1.0, 1.0], [zero, 0.5, 1.0]], POSITIVE, wanted)?;
         }
     }
@@ -255,13 +256,13 @@ fn parallel(subject: &Subject) -> Verdict {
 }
 
 fn in_a_face(subject: &Subject) -> Verdict {
-    for (zero, name) in ZEROS {
+    for zero in ZEROS {
         for (bounds, x, place) in [
             (&BOX, 2.0, "in the face"),
             (&BOX, 4.0, "in the face"),
             (&WALL, 2.0, "in the flat box"),
         ] {
-            let what = format!("direction.x = {name}, {place} x = {x}");
+            let what = format!("direction.x = {}, {place} x = {x}", zero.shown());
             let ray = Ray::new(DVec3::new(x, 1.0, 1.0), DVec3::new(zero, 0.5, 1.0));
             judge(subject, (bounds, &ray, POSITIVE, &what), Some(2.0))?;
         }

@@ -37,6 +37,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              Then `items.sort_by(|a, b| a.center[axis].total_cmp(&b.center[axis]).then(a.id.cmp(&b.id)))`.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e02_median_split.rs"),
             file: "crates/accel/src/bvh/grow.rs",
             item: "pub fn split_at_median",
             notice: "nothing is sorted: `select_nth_unstable_by` only puts the middle item into its place, in \
@@ -48,6 +49,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "the longest axis, not the farthest", run: longest },
         Check { name: "an odd number", run: odd },
         Check { name: "centres that coincide", run: coincide },
+        Check { name: "centres that almost coincide", run: almost },
         Check { name: "every split of the picture", run: crowd },
     ],
     slips: slips! {
@@ -81,6 +83,15 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
             "an odd number" catches {
                 let axis = widest(items);
                 items.sort_by_key(|item| (item.center[axis] as i64, item.id));
+                items.len() / 2
+            };
+        "coordinates are compared in `f32`, to which those that differ by little are equal: keep to `f64`":
+            "centres that almost coincide" catches {
+                let axis = widest(items);
+                items.sort_by(|a, b| {
+                    let [a, b] = [a, b].map(|item| (item.center[axis] as f32, item.id));
+                    a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
+                });
                 items.len() / 2
             };
         "the front gets one item too many: the items before index n / 2 are n / 2":
@@ -183,6 +194,12 @@ fn coincide(subject: &Subject) -> Verdict {
     compare(subject, &[[1.5, 2.5, 3.5]; 6], &[4, 5, 1, 0, 3, 2], &[0, 1, 2])?;
     let centers = [[7.0, 1.0, 1.0], [2.0, 1.5, 1.0], [2.0, 1.0, 1.5], [2.0, 1.0, 1.0]];
     compare(subject, &centers, &[3, 0, 2, 1], &[1, 2])
+}
+
+/// The coordinates differ in their thirtieth bit.
+fn almost(subject: &Subject) -> Verdict {
+    let centers = [3.0, 1.0, 2.0, 0.0].map(|x| [1.0 + x * 2.0_f64.powi(-30), 0.5, 0.25]);
+    compare(subject, &centers, &[2, 0, 1, 3], &[1, 3])
 }
 
 /// 512 points of a square, crowded on the left. They are whole numbers, so that no rounding changes their order.

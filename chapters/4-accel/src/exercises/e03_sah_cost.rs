@@ -33,6 +33,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              is smaller than `boxes.len() as f64`.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e03_sah_cost.rs"),
             file: "crates/accel/src/sah.rs",
             item: "pub fn sah_cost",
             notice: "the hierarchy's own `best_plane`, in crates/accel/src/bvh/grow.rs, tries 15 planes on each \

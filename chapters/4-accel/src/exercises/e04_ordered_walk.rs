@@ -39,6 +39,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              `visit` each whose `enter` is not beyond `walk.closest()`.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e04_ordered_walk.rs"),
             file: "crates/accel/src/binary_tree.rs",
             item: "fn visit",
             notice: "None is less than any Some, so children that are missed come first, and cost nothing",

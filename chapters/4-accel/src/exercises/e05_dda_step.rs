@@ -35,6 +35,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              t; outside 0 to `resolution[k] - 1` the answer is None.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e05_dda_step.rs"),
             file: "crates/accel/src/grid.rs",
             item: "fn look_ahead",
             notice: "each t is computed anew from the index: adding a constant at each step adds up its rounding",

@@ -34,6 +34,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              for `far.min`.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e06_kd_plane.rs"),
             file: "crates/accel/src/kd/sides.rs",
             item: "pub(super) fn divide",
             notice: "the course's ray is thick, by what it may err: it reaches a plane before it leaves it",
@@ -193,15 +194,15 @@ fn one(subject: &Subject) -> Verdict {
     compare(subject, "the plane is behind the ray", [3.0, 1.0, -2.0], Sides::Far)
 }
 
-/// The two zeros and their names, which differ by the sign only.
-const ZEROS: [(f64, &str); 2] = [(0.0, "0"), (-0.0, "−0")];
+/// The two zeros, which their sign tells apart.
+const ZEROS: [f64; 2] = [0.0, -0.0];
 
 /// For 0 near is below, for −0 above.
 fn parallel(subject: &Subject) -> Verdict {
     let sides = [[Sides::Near, Sides::Far], [Sides::Far, Sides::Near]];
-    for ((zero, name), [below, above]) in ZEROS.into_iter().zip(sides) {
+    for (zero, [below, above]) in ZEROS.into_iter().zip(sides) {
         for (place, origin, wanted) in [("below", 1.0, below), ("above", 7.0, above)] {
-            let what = format!("along the plane, {place} it, direction {name}");
+            let what = format!("along the plane, {place} it, direction {}", zero.shown());
             compare(subject, &what, [3.0, origin, zero], wanted)?;
         }
     }
@@ -233,8 +234,8 @@ fn by_a_hair(subject: &Subject) -> Verdict {
 }
 
 fn in_plane(subject: &Subject) -> Verdict {
-    for (zero, name) in ZEROS {
-        let what = format!("in the plane, direction {name}");
+    for zero in ZEROS {
+        let what = format!("in the plane, direction {}", zero.shown());
         compare(subject, &what, [3.0, 3.0, zero], uncut(INSIDE))?;
     }
     Ok(())

@@ -39,6 +39,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              than `best`; pairs compare by t first.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e07_brute_force.rs"),
             file: "crates/accel/src/cells.rs",
             item: "pub(crate) fn search",
             notice: "the mailbox has eight places only, which is as good as a list and costs nothing to search; \

@@ -41,6 +41,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
              equal ones in order.",
         ],
         solution: Solution {
+            answer: include_str!("../../solutions/e08_eight_boxes.rs"),
             file: "crates/accel/src/wide/walk.rs",
             item: "fn enter",
             notice: "the rows are chosen when the ray is prepared, not at each node; and push_but_nearest sorts \

@@ -1,10 +1,32 @@
-//! The right answers: the chapter's own code under the names that students write.
+//! The right answers: the chapter's solutions, each of which is a student's file.
 
-use glam::IVec3;
-use lancer_accel::{Cell, Lattice, Sides, split_at_median};
-use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
+#[path = "../../solutions/e01_slab_test.rs"]
+mod e01_slab_test;
+#[path = "../../solutions/e02_median_split.rs"]
+mod e02_median_split;
+#[path = "../../solutions/e03_sah_cost.rs"]
+mod e03_sah_cost;
+#[path = "../../solutions/e04_ordered_walk.rs"]
+mod e04_ordered_walk;
+#[path = "../../solutions/e05_dda_step.rs"]
+mod e05_dda_step;
+#[path = "../../solutions/e06_kd_plane.rs"]
+mod e06_kd_plane;
+#[path = "../../solutions/e07_brute_force.rs"]
+mod e07_brute_force;
+#[path = "../../solutions/e08_eight_boxes.rs"]
+mod e08_eight_boxes;
 
-use super::{Item, Lanes, Met, PreparedRay, Subject, Test, Walk};
+use super::Subject;
+
+pub use e01_slab_test::slab_test;
+pub use e02_median_split::median_split;
+pub use e03_sah_cost::{best_split, sah_cost};
+pub use e04_ordered_walk::visit;
+pub use e05_dda_step::next_cell;
+pub use e06_kd_plane::plane_sides;
+pub use e07_brute_force::search_cells;
+pub use e08_eight_boxes::{eight_boxes, near_to_far};
 
 /// All of them.
 pub const SUBJECT: Subject = Subject {
@@ -20,97 +42,141 @@ pub const SUBJECT: Subject = Subject {
     near_to_far,
 };
 
-/// [`Subject::slab_test`].
-pub fn slab_test(bounds: &Bounds3, ray: &Ray, range: Interval) -> Option<f64> {
-    Slabs::new(ray).enter(bounds.min, bounds.max, range)
-}
+/// The answers beside the course's own code, so that neither drifts from the other. [`eight_boxes`] has a check of
+/// this kind, « as one box after the other ».
+#[cfg(test)]
+mod tests {
+    use glam::{DVec3, IVec3};
+    use lancer_accel::{Cell, Grid, Lattice, Sides, split_at_median};
+    use lancer_core::geometry::{Bounds3, Interval, Ray, Shear, Slabs, intersect_triangle};
+    use lancer_core::intersector::{Intersector, LinearScan};
+    use lancer_core::sampling::Uniform;
+    use lancer_core::scene::PrimitiveId;
 
-/// [`Subject::median_split`].
-pub fn median_split(items: &mut [Item]) -> usize {
-    split_at_median(items, |item| (item.center.as_vec3a(), item.id))
-}
+    use super::super::walk::Tree;
+    use super::super::{Item, Walk};
+    use super::*;
+    use crate::scenes;
 
-/// [`Subject::sah_cost`].
-pub fn sah_cost(node: &Bounds3, parts: [&Bounds3; 2], counts: [usize; 2]) -> f64 {
-    let extent = |bounds: &Bounds3| bounds.max - bounds.min;
-    lancer_accel::sah_cost(extent(node), parts.map(extent), counts, 1.0)
-}
-
-/// [`Subject::best_split`].
-pub fn best_split(boxes: &[Bounds3]) -> Option<usize> {
-    let around = |boxes: &[Bounds3]| boxes.iter().copied().fold(Bounds3::EMPTY, Bounds3::union);
-    let cost = |left: usize| {
-        let (a, b) = boxes.split_at(left);
-        sah_cost(&around(boxes), [&around(a), &around(b)], [a.len(), b.len()])
-    };
-    let best = (1..boxes.len()).min_by(|a, b| cost(*a).total_cmp(&cost(*b)))?;
-    (cost(best) < boxes.len() as f64).then_some(best)
-}
-
-/// [`Subject::visit`].
-pub fn visit(walk: &mut Walk, node: usize) {
-    let Some(children) = walk.children(node) else { return walk.test_leaf(node) };
-    let mut order = children.map(|child| (walk.enter(child), child));
-    if order[1].0 < order[0].0 {
-        order.reverse();
+    /// A point of the cube [−1, 1]³.
+    fn point(random: &mut Uniform) -> DVec3 {
+        DVec3::from_array(std::array::from_fn(|_| 2.0 * random.number() - 1.0))
     }
-    for (enter, child) in order {
-        if enter.is_some_and(|enter| enter <= walk.closest()) {
-            visit(walk, child);
+
+    /// A box about half as wide as the cube.
+    fn bounds(random: &mut Uniform) -> Bounds3 {
+        Bounds3::of_points([point(random), point(random)])
+    }
+
+    /// The course rounds the near t down, by a factor, and is else the same.
+    #[test]
+    fn the_slab_test_is_the_courses_but_for_its_pad() {
+        let mut random = Uniform::new(61, 0, 0);
+        let mut met = 0;
+        for _ in 0..2000 {
+            let bounds = bounds(&mut random);
+            let origin = 2.0 * point(&mut random);
+            let ray = Ray::new(origin, point(&mut random) - origin);
+            let enter = slab_test(&bounds, &ray, Interval::POSITIVE);
+            let course = Slabs::new(&ray).enter(bounds.min, bounds.max, Interval::POSITIVE);
+            assert_eq!(enter.map(|t| t * Slabs::NEAR), course, "{bounds:?} {ray:?}");
+            met += u32::from(enter.is_some());
+        }
+        assert!((200..1800).contains(&met), "{met}");
+    }
+
+    #[test]
+    fn the_median_split_has_the_courses_halves() {
+        let mut random = Uniform::new(62, 0, 0);
+        for count in 2..100 {
+            let items: Vec<Item> = (0..count)
+                .map(|id| Item { center: point(&mut random), id: PrimitiveId(id) })
+                .collect();
+            let front = |split: &dyn Fn(&mut [Item]) -> usize| {
+                let mut items = items.clone();
+                let middle = split(&mut items);
+                let mut ids: Vec<PrimitiveId> =
+                    items[..middle].iter().map(|item| item.id).collect();
+                ids.sort_unstable();
+                ids
+            };
+            let course = |items: &mut [Item]| {
+                split_at_median(items, |item| (item.center.as_vec3a(), item.id))
+            };
+            assert_eq!(front(&median_split), front(&course));
         }
     }
-}
 
-/// [`Subject::next_cell`].
-pub fn next_cell(lattice: &Lattice, ray: &Ray, cell: IVec3) -> Option<(IVec3, f64)> {
-    lattice.step(ray, cell)
-}
-
-/// [`Subject::plane_sides`].
-pub fn plane_sides(split: f64, origin: f64, direction: f64, inside: Interval) -> Sides {
-    Sides::of(split, origin, direction, inside)
-}
-
-/// [`Subject::search_cells`].
-pub fn search_cells(cells: &[Cell], test: &mut Test) -> Option<Met> {
-    let mut best: Option<Met> = None;
-    let mut tested = Vec::new();
-    for cell in cells {
-        if best.is_some_and(|(t, _)| cell.enter > t) {
-            break;
+    #[test]
+    fn a_split_costs_what_the_course_says_to_the_bit() {
+        let mut random = Uniform::new(63, 0, 0);
+        let extent = |bounds: &Bounds3| bounds.max - bounds.min;
+        for n in 0..200 {
+            let [a, b] = [bounds(&mut random), bounds(&mut random)];
+            let (node, counts) = (a.union(b), [n, 200 - n]);
+            let course =
+                lancer_accel::sah_cost(extent(&node), [a, b].map(|b| extent(&b)), counts, 1.0);
+            assert_eq!(sah_cost(&node, [&a, &b], counts), course);
         }
-        for &primitive in cell.primitives {
-            if tested.contains(&primitive) {
-                continue;
+    }
+
+    #[test]
+    fn the_ordered_walk_finds_the_closest_hit() {
+        let scene = scenes::family("town").scene(300);
+        let (tree, oracle) = (Tree::new(&scene), LinearScan::new(&scene));
+        let rays = scene.camera.primary_rays(lancer_core::image::ImageSize::new(24, 18));
+        for pixel in 0..24 * 18 {
+            let ray = rays.through(f64::from(pixel % 24) + 0.5, f64::from(pixel / 24) + 0.5);
+            let (hit, _) = Walk::new(&scene, &tree, &ray).run(visit);
+            assert_eq!(hit, oracle.closest_hit(&ray, Interval::POSITIVE));
+        }
+    }
+
+    #[test]
+    fn a_step_of_the_grid_is_the_courses_to_the_bit() {
+        let mut random = Uniform::new(65, 0, 0);
+        for _ in 0..2000 {
+            let (min, width) = (point(&mut random), point(&mut random).abs());
+            let lattice = Lattice { min, width, resolution: IVec3::new(3, 4, 5) };
+            let cell = (3.0 * point(&mut random).abs()).as_ivec3();
+            let ray = Ray::new(point(&mut random), point(&mut random));
+            assert_eq!(next_cell(&lattice, &ray, cell), lattice.step(&ray, cell));
+        }
+    }
+
+    #[test]
+    fn the_sides_of_a_plane_are_the_courses_to_the_bit() {
+        let mut random = Uniform::new(66, 0, 0);
+        let inside = Interval { min: 0.5, max: 4.0 };
+        for k in 0..2000 {
+            let [split, origin] = [random.number(), random.number()];
+            let direction = match k % 10 {
+                0 => 0.0,
+                1 => -0.0,
+                _ => random.number() - 0.5,
+            };
+            for split in [split, origin] {
+                let course = Sides::of(split, origin, direction, inside);
+                assert_eq!(plane_sides(split, origin, direction, inside), course);
             }
-            tested.push(primitive);
-            let Some(t) = test(primitive) else { continue };
-            if best.is_none_or(|best| (t, primitive) < best) {
-                best = Some((t, primitive));
-            }
         }
     }
-    best
-}
 
-/// [`Subject::eight_boxes`].
-pub fn eight_boxes(planes: &[Lanes; 6], ray: &PreparedRay, max: f32) -> (Lanes, u32) {
-    let (mut near, mut far) = ([0.0_f32; 8], [max; 8]);
-    for axis in 0..3 {
-        let inverse = ray.inverse[axis];
-        let first = 2 * axis + usize::from(inverse < 0.0);
-        let (first, last) = (planes[first], planes[first ^ 1]);
-        for lane in 0..8 {
-            near[lane] = near[lane].max(first[lane] * inverse + ray.near_offset[axis]);
-            far[lane] = far[lane].min(last[lane] * inverse + ray.far_offset[axis]);
+    #[test]
+    fn the_search_of_a_grids_cells_finds_the_courses_hit() {
+        let scene = scenes::family("town").scene(300);
+        let grid = Grid::build(&scene);
+        let rays = scene.camera.primary_rays(lancer_core::image::ImageSize::new(24, 18));
+        for pixel in 0..24 * 18 {
+            let ray = rays.through(f64::from(pixel % 24) + 0.5, f64::from(pixel / 24) + 0.5);
+            let shear = Shear::new(ray.direction);
+            let cells: Vec<Cell> = grid.cells(&ray, Interval::POSITIVE).collect();
+            let met = search_cells(&cells, &mut |primitive| {
+                let corners = scene.mesh.corners(primitive.0 as usize);
+                intersect_triangle(corners, &ray, &shear).map(|hit| hit.t)
+            });
+            let course = grid.closest_hit(&ray, Interval::POSITIVE);
+            assert_eq!(met, course.map(|hit| (hit.t, hit.primitive)));
         }
     }
-    (near, (0..8).fold(0, |met, lane| met | u32::from(near[lane] <= far[lane]) << lane))
-}
-
-/// [`Subject::near_to_far`].
-pub fn near_to_far(near: &Lanes, met: u32) -> Vec<usize> {
-    let mut lanes: Vec<usize> = (0..8).filter(|lane| met >> lane & 1 == 1).collect();
-    lanes.sort_by(|&a, &b| near[a].total_cmp(&near[b]));
-    lanes
 }
