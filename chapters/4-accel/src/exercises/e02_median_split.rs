@@ -1,11 +1,15 @@
 //! E4.2: the median split.
 
+use std::cmp::Reverse;
+
 use glam::DVec3;
 use lancer_core::Rgb;
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::sampling::Uniform;
 use lancer_core::scene::PrimitiveId;
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, slips};
+use lancer_exercise::{
+    Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, ensure, same, slips,
+};
 use lancer_lesson::picture::painted;
 
 use super::reference::median_split;
@@ -45,14 +49,22 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "the longest axis, not the farthest", run: longest },
         Check { name: "an odd number", run: odd },
         Check { name: "centres that coincide", run: coincide },
+        Check { name: "centres that almost coincide", run: almost },
+        Check { name: "every split of the picture", run: crowd },
     ],
     slips: slips! {
         median_split(items):
         "the cut is always across x: take the axis on which the centres are spread widest":
             "the longest axis, not the farthest" catches along(0, items);
-        "the axis is that of the largest coordinates: the extent is the largest minus the smallest":
+        "the axis is that of the largest coordinates: the extent is the largest minus the smallest, and their search \
+         begins with −∞ and ∞, not with 0":
             "the longest axis, not the farthest" catches
                 along(extent(items).1.max_position(), items);
+        "the axis is the one on which the centres are spread least: take the longest":
+            "a row along x" catches {
+                let (min, max) = extent(items);
+                along((max - min).min_position(), items)
+            };
         "the items are not sorted: the order in which they arrive decides":
             "a row along x" catches items.len() / 2;
         "the upper half is at the front: the order is turned around":
@@ -67,6 +79,23 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                 along(axis, items);
                 items.partition_point(|item| item.center[axis] < 0.5 * (min + max)[axis])
             };
+        "coordinates are cut to whole numbers before they are compared: compare the `f64` by `total_cmp`":
+            "an odd number" catches {
+                let axis = widest(items);
+                items.sort_by_key(|item| (item.center[axis] as i64, item.id));
+                items.len() / 2
+            };
+        "coordinates are compared in `f32`, to which those that differ by little are equal: keep to `f64`":
+            "centres that almost coincide" catches {
+                let axis = widest(items);
+                items.sort_by(|a, b| {
+                    let [a, b] = [a, b].map(|item| (item.center[axis] as f32, item.id));
+                    a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
+                });
+                items.len() / 2
+            };
+        "the front gets one item too many: the items before index n / 2 are n / 2":
+            "a row along x" catches along(widest(items), items) + 1;
         "of an odd number the front gets the larger part":
             "an odd number" catches {
                 median_split(items);
@@ -77,6 +106,19 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
             "centres that coincide" catches {
                 sort(widest(items), items);
                 items.len() / 2
+            };
+        "where coordinates are equal the larger id comes first: the smaller one is lower":
+            "centres that coincide" catches {
+                items.sort_by_key(|item| Reverse(item.id));
+                sort(widest(items), items);
+                items.len() / 2
+            };
+        "the front is what lies below the middle item's coordinate: items that are equal to it are not counted":
+            "centres that coincide" catches {
+                let axis = widest(items);
+                let count = along(axis, items);
+                let middle = items[count].center[axis];
+                items.partition_point(|item| item.center[axis] < middle)
             };
     },
     draw,
@@ -144,7 +186,7 @@ fn longest(subject: &Subject) -> Verdict {
 
 fn odd(subject: &Subject) -> Verdict {
     let at = |z: f64| [0.5, 0.25 * z, z];
-    let centers = [at(4.0), at(-2.0), at(3.0), at(9.0), at(-1.0)];
+    let centers = [at(0.5), at(-0.25), at(0.375), at(0.875), at(-0.125)];
     compare(subject, &centers, &[3, 1, 2, 4, 0], &[1, 4])
 }
 
@@ -154,37 +196,85 @@ fn coincide(subject: &Subject) -> Verdict {
     compare(subject, &centers, &[3, 0, 2, 1], &[1, 2])
 }
 
-/// Points of a square, each pixel in the colour of the part in which the nearest point ends up after four
-/// splits.
-fn draw(subject: &Subject) -> Image {
-    let size = ImageSize::new(160, 160);
+/// The coordinates differ in their thirtieth bit.
+fn almost(subject: &Subject) -> Verdict {
+    let centers = [3.0, 1.0, 2.0, 0.0].map(|x| [1.0 + x * 2.0_f64.powi(-30), 0.5, 0.25]);
+    compare(subject, &centers, &[2, 0, 1, 3], &[1, 3])
+}
+
+/// 512 points of a square, crowded on the left. They are whole numbers, so that no rounding changes their order.
+fn points() -> Vec<Item> {
     let point = |id| {
         let mut random = Uniform::new(42, id, 0);
         let (x, y) = (random.number().powi(3), random.number());
-        // Dyadic, so that no rounding changes the order.
         Item { center: (DVec3::new(x, y, 0.0) * 4096.0).floor(), id: PrimitiveId(id) }
     };
-    let mut items: Vec<Item> = (0..512).map(point).collect();
-    let mut parts = Vec::new();
-    divide(subject, &mut items, 4, &mut parts);
-    painted(size, |x, y| {
+    (0..512).map(point).collect()
+}
+
+/// Splits items, and each half again, until `levels` are done; shows what is split, how many of it are in front, and
+/// at the end each part.
+fn divide(
+    subject: &Subject,
+    items: &mut [Item],
+    levels: u32,
+    split: &mut dyn FnMut(&[Item], usize) -> Verdict,
+    part: &mut dyn FnMut(&[Item]),
+) -> Verdict {
+    if levels == 0 || items.len() < 2 {
+        part(items);
+        return Ok(());
+    }
+    let middle = (subject.median_split)(items);
+    split(items, middle)?;
+    let (front, back) = items.split_at_mut(middle.min(items.len()));
+    divide(subject, front, levels - 1, split, part)?;
+    divide(subject, back, levels - 1, split, part)
+}
+
+const LEVELS: u32 = 4;
+
+/// In front of each split is the smaller half, and none of it comes after any of the rest along the longest axis.
+fn crowd(subject: &Subject) -> Verdict {
+    let mut split = |items: &[Item], middle: usize| {
+        let axis = widest(items);
+        let key = |item: &Item| (item.center[axis] as i64, item.id);
+        let (front, back) = items.split_at(middle.min(items.len()));
+        let last = front.iter().map(key).max();
+        let first = back.iter().map(key).min();
+        let name = ["x", "y", "z"][axis];
+        let case =
+            format!("{} of the picture's 512 points, spread widest along {name}", items.len());
+        let wanted = format!("{} of them in front, all lower than the others", items.len() / 2);
+        let got = format!("{middle} in front");
+        ensure(middle == items.len() / 2 && last < first, || {
+            let order = if last < first { "" } else { ", one of which is not lower" };
+            Mismatch::new(case, got + order, wanted)
+        })
+    };
+    let mut ended = Vec::new();
+    divide(subject, &mut points(), LEVELS, &mut split, &mut |part| ended.extend(ids(part)))?;
+    ended.sort_unstable();
+    let case = "the picture's 512 points, divided four times: the points that are left";
+    same(|| case.to_owned(), &ended.into_iter().eq(0..512), &true)
+}
+
+/// Points of a square, each pixel in the colour of the part in which the nearest point ends up after four
+/// splits.
+fn draw(subject: &Subject) -> Image {
+    let mut parts: Vec<(DVec3, usize)> = Vec::new();
+    let mut count = 0;
+    let mut keep = |part: &[Item]| {
+        parts.extend(part.iter().map(|item| (item.center, count)));
+        count += 1;
+    };
+    // Nothing is judged here, so nothing fails.
+    let _ = divide(subject, &mut points(), LEVELS, &mut |_, _| Ok(()), &mut keep);
+    painted(ImageSize::new(160, 160), |x, y| {
         let at = DVec3::new(x, y, 0.0) * (4096.0 / 160.0);
         let nearest = parts
             .iter()
             .min_by(|a, b| a.0.distance_squared(at).total_cmp(&b.0.distance_squared(at)));
         nearest.map_or(Rgb::ZERO, |(_, part)| color_of(*part))
     })
-}
-
-/// Gives each part of the items a number.
-fn divide(subject: &Subject, items: &mut [Item], levels: u32, parts: &mut Vec<(DVec3, usize)>) {
-    if levels == 0 || items.len() < 2 {
-        let part = parts.last().map_or(0, |(_, part)| part + 1);
-        parts.extend(items.iter().map(|item| (item.center, part)));
-        return;
-    }
-    let middle = (subject.median_split)(items).min(items.len());
-    let (front, back) = items.split_at_mut(middle);
-    divide(subject, front, levels - 1, parts);
-    divide(subject, back, levels - 1, parts);
 }

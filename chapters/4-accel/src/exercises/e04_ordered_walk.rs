@@ -51,6 +51,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "the closest hit among many", run: closest },
         Check { name: "no more primitives than need be", run: primitives },
         Check { name: "no box twice", run: box_tests },
+        Check { name: "every ray of the picture", run: from_the_front },
     ],
     slips: slips! {
         visit(walk, node):
@@ -66,12 +67,18 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                 by(walk, node, near_first, |_, _, (t, _)| t.is_some());
         "only the nearer child is visited: a ray that meets its box may still miss what is in it":
             "the closest hit among many" catches by(walk, node, near_only, |_, _, _| true);
+        "where one child is missed the other is not visited either: a ray may meet either of the two":
+            "the closest hit among many" catches by(walk, node, both_or_none, |walk, _, (t, _)| {
+                t.is_some_and(|t| t <= walk.closest())
+            });
         "the walk ends with the first hit, whatever comes nearer in the other child: boxes overlap":
             "the closest hit among many" catches by(walk, node, near_first, |walk, _, (t, _)| {
                 t.is_some() && walk.closest().is_infinite()
             });
         "children are visited without a test of their boxes":
             "the tests along a row" catches by(walk, node, as_stored, |_, _, _| true);
+        "the node's own box is tested: whoever called has done that, and asked only because the ray meets it":
+            "the tests along a row" catches own_box(walk, node);
         "the far child's box is tested a second time: its t is known, and only the closest hit has changed":
             "no box twice" catches by(walk, node, near_first, |walk, place, (t, child)| {
                 t.is_some() && (place == 0 || walk.enter(child).is_some())
@@ -99,6 +106,17 @@ fn by(
     }
 }
 
+/// A walk that tests the box of each node it comes to.
+fn own_box(walk: &mut Walk, node: usize) {
+    if walk.enter(node).is_none() {
+        return;
+    }
+    match walk.children(node) {
+        None => walk.test_leaf(node),
+        Some(children) => children.into_iter().for_each(|child| own_box(walk, child)),
+    }
+}
+
 fn as_stored(_: &mut Walk, children: [usize; 2]) -> Vec<Child> {
     children.map(|child| (None, child)).into()
 }
@@ -109,6 +127,11 @@ fn near_first(walk: &mut Walk, children: [usize; 2]) -> Vec<Child> {
         row.reverse();
     }
     row.into()
+}
+
+fn both_or_none(walk: &mut Walk, children: [usize; 2]) -> Vec<Child> {
+    let row = near_first(walk, children);
+    if row.iter().all(|(t, _)| t.is_some()) { row } else { Vec::new() }
 }
 
 fn far_first(walk: &mut Walk, children: [usize; 2]) -> Vec<Child> {
@@ -176,20 +199,26 @@ fn over_the_heap(
 ) -> Verdict {
     let (scene, rays) = heap();
     let tree = Tree::new(&scene);
-    rays.iter().try_for_each(|ray| {
+    // From inside two boxes both are entered at once, and either may be visited first.
+    let from_outside = |ray: &&Ray| (ray.origin - 2.0).abs().max_element() > 3.0;
+    rays.iter().filter(from_outside).try_for_each(|ray| {
         let (_, fair) = Walk::new(&scene, &tree, ray).run(visit);
         judge(ray, walked(subject, &scene, &tree, ray), fair)
     })
 }
 
 fn closest(subject: &Subject) -> Verdict {
-    let (scene, _) = heap();
-    let oracle = LinearScan::new(&scene);
-    over_the_heap(subject, |ray, (hit, _), _| {
+    let (scene, rays) = heap();
+    let (tree, oracle) = (Tree::new(&scene), LinearScan::new(&scene));
+    rays.iter().try_for_each(|ray| {
+        let (hit, _) = walked(subject, &scene, &tree, ray);
         let wanted = oracle.closest_hit(ray, Interval::POSITIVE);
-        let t = |hit: Option<Hit>| hit.map(|hit| hit.t);
-        same(|| format!("60 balls; {}: t", ray.shown()), &t(hit), &t(wanted))
+        same(|| format!("60 balls; {}: t", ray.shown()), &t_of(hit), &t_of(wanted))
     })
+}
+
+fn t_of(hit: Option<Hit>) -> Option<f64> {
+    hit.map(|hit| hit.t)
 }
 
 fn no_more(what: &str, ray: &Ray, got: u64, fair: u64) -> Verdict {
@@ -211,14 +240,38 @@ fn box_tests(subject: &Subject) -> Verdict {
     })
 }
 
+/// The side of the picture's left half, and of its right one.
+const SIDE: u32 = 160;
+
+/// The ray of a pixel of the picture's left half.
+fn ahead(x: f64, y: f64) -> Ray {
+    let side = f64::from(SIDE);
+    Ray::new(DVec3::new(4.0 * x / side, 4.0 - 4.0 * y / side, -2.0), DVec3::Z)
+}
+
+fn from_the_front(subject: &Subject) -> Verdict {
+    let (scene, _) = heap();
+    let (tree, oracle) = (Tree::new(&scene), LinearScan::new(&scene));
+    for (x, y) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))) {
+        let ray = ahead(f64::from(x) + 0.5, f64::from(y) + 0.5);
+        let (hit, counts) = walked(subject, &scene, &tree, &ray);
+        let (_, fair) = Walk::new(&scene, &tree, &ray).run(visit);
+        let case = |what: &str| format!("60 balls, pixel {x} of row {y}; {}: {what}", ray.shown());
+        let wanted = oracle.closest_hit(&ray, Interval::POSITIVE);
+        same(|| case("t"), &t_of(hit), &t_of(wanted))?;
+        same(|| case("primitives tested"), &counts.primitives, &fair.primitives)?;
+    }
+    Ok(())
+}
+
 /// Left the distance of the balls, right the number of balls tested, red from 8 on.
 fn draw(subject: &Subject) -> Image {
     let (scene, _) = heap();
     let tree = Tree::new(&scene);
-    painted(ImageSize::new(320, 160), |x, y| {
-        let at = DVec3::new(4.0 * (x % 160.0) / 160.0, 4.0 - 4.0 * y / 160.0, -2.0);
-        let (hit, counts) = walked(subject, &scene, &tree, &Ray::new(at, DVec3::Z));
-        if x < 160.0 {
+    let half = f64::from(SIDE);
+    painted(ImageSize::new(2 * SIDE, SIDE), |x, y| {
+        let (hit, counts) = walked(subject, &scene, &tree, &ahead(x % half, y));
+        if x < half {
             let t = hit.map_or(6.0, |hit| hit.t);
             return Rgb::splat(1.0 - t / 6.5);
         }

@@ -45,16 +45,23 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "forwards along each axis", run: forwards },
         Check { name: "backwards along each axis", run: backwards },
         Check { name: "a direction of 0", run: zero },
-        Check { name: "out of the grid", run: out },
+        Check { name: "out of the grid, at its upper ends", run: out_above },
+        Check { name: "out of the grid, at index 0", run: out_below },
         Check { name: "two planes at once", run: tie },
         Check { name: "after a thousand cells", run: far },
+        Check { name: "every step of the picture", run: fan_of_the_picture },
     ],
     slips: slips! {
         next_cell(lattice, ray, cell):
         "the plane ahead is always the upper one: a negative direction meets the lower one":
-            "backwards along each axis" catches step(lattice, ray, cell, |_| 1, sign, crossing);
+            "backwards along each axis" catches step(lattice, ray, cell, Rule { ahead: |_| 1, ..RIGHT });
+        "the plane behind is taken: a positive direction meets the upper one, index i + 1":
+            "forwards along each axis" catches
+                step(lattice, ray, cell, Rule { ahead: |d| i32::from(d < 0.0), ..RIGHT });
         "the step always goes upwards: a negative direction leads to the smaller index":
-            "backwards along each axis" catches step(lattice, ray, cell, ahead, |_| 1, crossing);
+            "backwards along each axis" catches step(lattice, ray, cell, Rule { sign: |_| 1, ..RIGHT });
+        "the answer is the cell that is left, not the one that is entered":
+            "forwards along each axis" catches next_cell(lattice, ray, cell).map(|(_, t)| (cell, t));
         "the grid's origin is left out: planes are at min + i · width":
             "forwards along each axis" catches
                 next_cell(&Lattice { min: DVec3::ZERO, ..*lattice }, ray, cell);
@@ -63,57 +70,104 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                 next_cell(&Lattice { width: DVec3::ONE, ..*lattice }, ray, cell);
         "the distance of the plane is not divided by the direction: that is no t":
             "forwards along each axis" catches
-                step(lattice, ray, cell, ahead, sign, |way, d| crossing(way, d.signum()));
-        "a direction of 0 is divided by: a ray in a plane gets 0 / 0, one beside it −∞ or ∞":
-            "a direction of 0" catches step(lattice, ray, cell, ahead, sign, |way, d| way / d);
+                step(lattice, ray, cell, Rule { crossing: |way, d| crossing(way, d.signum()), ..RIGHT });
+        "a direction of 0 is divided by: a ray in a plane gets 0 / 0, one outside it −∞ or ∞":
+            "a direction of 0" catches
+                step(lattice, ray, cell, Rule { crossing: |way, d| way / d, ..RIGHT });
         "the axis of the longest direction component is taken: cells between are left out":
             "forwards along each axis" catches {
                 let axis = ray.direction.abs().max_position();
                 let only = DVec3::AXES[axis] * ray.direction;
                 next_cell(lattice, &Ray::new(ray.origin, only), cell)
             };
-        "the end of the grid is not looked for: an index must be from 0 to resolution − 1":
-            "out of the grid" catches {
-                // As if the grid went on beyond every side.
-                let (min, resolution) = (lattice.min - lattice.width, lattice.resolution + 2);
-                let more = Lattice { min, resolution, ..*lattice };
-                next_cell(&more, ray, cell + 1).map(|(cell, t)| (cell - 1, t))
+        "of two planes met at once the larger axis is taken: replace the best t only by a smaller one":
+            "two planes at once" catches step(lattice, ray, cell, Rule { is_better: |t, best| t <= best, ..RIGHT });
+        "where two planes are met at once the step goes along both axes: go along one, the other follows":
+            "two planes at once" catches {
+                let (mut next, t) = next_cell(lattice, ray, cell)?;
+                let later = step(lattice, ray, cell, Rule { is_better: |t, best| t <= best, ..RIGHT })?.0;
+                for axis in 0..3 {
+                    if later[axis] != cell[axis] {
+                        next[axis] = later[axis];
+                    }
+                }
+                Some((next, t))
             };
+        "the end of the grid is not looked for: an index must be from 0 to resolution − 1":
+            "out of the grid, at its upper ends" catches within_more(lattice, ray, cell, [1, 1]);
+        "an index equal to the resolution counts as inside: the last one is resolution − 1":
+            "out of the grid, at its upper ends" catches within_more(lattice, ray, cell, [0, 1]);
+        "the lower end of the grid is not looked for: −1 is no index":
+            "out of the grid, at index 0" catches within_more(lattice, ray, cell, [1, 0]);
+        "t is computed in `f32`: a thousand cells away it is off by more than its seventh digit. Keep to `f64`":
+            "after a thousand cells" catches step_in_32_bits(lattice, ray, cell);
+        "the answer is a length, t times that of the direction: t itself is wanted":
+            "forwards along each axis" catches
+                next_cell(lattice, ray, cell).map(|(cell, t)| (cell, t * ray.direction.length()));
     },
     draw,
     explain: None,
 };
 
-fn ahead(d: f64) -> i32 {
-    i32::from(d >= 0.0)
-}
-
-fn sign(d: f64) -> i32 {
-    if d < 0.0 { -1 } else { 1 }
-}
-
 fn crossing(way: f64, d: f64) -> f64 {
     if d == 0.0 { f64::INFINITY } else { way / d }
 }
 
-/// A step by the index of the plane ahead, the way to the next cell, and when a plane is met.
-fn step(
-    lattice: &Lattice,
-    ray: &Ray,
-    cell: IVec3,
+/// What a step is made of.
+#[derive(Clone, Copy)]
+struct Rule {
+    /// By how much the index of the plane ahead exceeds the cell's.
     ahead: fn(f64) -> i32,
+    /// The way to the next cell.
     sign: fn(f64) -> i32,
-    crossing: impl Fn(f64, f64) -> f64,
-) -> Option<(IVec3, f64)> {
+    /// When a plane is met, by its distance along the axis and the direction.
+    crossing: fn(f64, f64) -> f64,
+    /// Whether a t replaces the best one.
+    is_better: fn(f64, f64) -> bool,
+}
+
+const RIGHT: Rule = Rule {
+    ahead: |d| i32::from(d >= 0.0),
+    sign: |d| if d < 0.0 { -1 } else { 1 },
+    crossing,
+    is_better: |t, best| t < best,
+};
+
+fn step(lattice: &Lattice, ray: &Ray, cell: IVec3, rule: Rule) -> Option<(IVec3, f64)> {
     let t = [0, 1, 2].map(|k| {
         let d = ray.direction[k];
-        let plane = lattice.min[k] + f64::from(cell[k] + ahead(d)) * lattice.width[k];
-        crossing(plane - ray.origin[k], d)
+        let plane = lattice.min[k] + f64::from(cell[k] + (rule.ahead)(d)) * lattice.width[k];
+        (rule.crossing)(plane - ray.origin[k], d)
+    });
+    let axis = (1..3).fold(0, |best, k| if (rule.is_better)(t[k], t[best]) { k } else { best });
+    let mut next = cell;
+    next[axis] += (rule.sign)(ray.direction[axis]);
+    (0..lattice.resolution[axis]).contains(&next[axis]).then_some((next, t[axis]))
+}
+
+fn step_in_32_bits(lattice: &Lattice, ray: &Ray, cell: IVec3) -> Option<(IVec3, f64)> {
+    let t = [0, 1, 2].map(|k| {
+        let [min, width, o, d] =
+            [lattice.min, lattice.width, ray.origin, ray.direction].map(|v| v[k] as f32);
+        let plane = min + (cell[k] + i32::from(d > 0.0)) as f32 * width;
+        if d == 0.0 { f32::INFINITY } else { (plane - o) / d }
     });
     let axis = (1..3).fold(0, |best, k| if t[k] < t[best] { k } else { best });
     let mut next = cell;
-    next[axis] += sign(ray.direction[axis]);
-    (0..lattice.resolution[axis]).contains(&next[axis]).then_some((next, t[axis]))
+    next[axis] += if ray.direction[axis] < 0.0 { -1 } else { 1 };
+    (0..lattice.resolution[axis]).contains(&next[axis]).then_some((next, f64::from(t[axis])))
+}
+
+/// A right step in a grid with so many more cells below index 0 and above the last.
+fn within_more(
+    lattice: &Lattice,
+    ray: &Ray,
+    cell: IVec3,
+    [below, above]: [i32; 2],
+) -> Option<(IVec3, f64)> {
+    let min = lattice.min - f64::from(below) * lattice.width;
+    let more = Lattice { min, resolution: lattice.resolution + below + above, ..*lattice };
+    next_cell(&more, ray, cell + below).map(|(cell, t)| (cell - below, t))
 }
 
 const GRID: Lattice = Lattice {
@@ -185,12 +239,18 @@ fn zero(subject: &Subject) -> Verdict {
     Ok(())
 }
 
-fn out(subject: &Subject) -> Verdict {
+fn out_above(subject: &Subject) -> Verdict {
     let last = [4.0, 3.75, 20.0];
     compare(subject, &GRID, (last, [1.0, 0.125, 0.5]), [3, 5, 4], None)?;
     compare(subject, &GRID, (last, [1.0, 0.5, 0.5]), [3, 5, 4], None)?;
-    compare(subject, &GRID, (last, [0.25, 0.0625, 3.0]), [3, 5, 4], None)?;
-    compare(subject, &GRID, ([-2.0, 1.25, 4.0], [-1.0, 0.125, 0.5]), [0, 0, 0], None)
+    compare(subject, &GRID, (last, [0.25, 0.0625, 3.0]), [3, 5, 4], None)
+}
+
+fn out_below(subject: &Subject) -> Verdict {
+    let first = [-2.0, 1.25, 4.0];
+    compare(subject, &GRID, (first, [-1.0, 0.125, 0.5]), [0, 0, 0], None)?;
+    compare(subject, &GRID, (first, [0.25, -0.5, -0.25]), [0, 0, 0], None)?;
+    compare(subject, &GRID, (first, [0.25, 0.0625, -3.0]), [0, 0, 0], None)
 }
 
 /// y and z are met at t = 1, x at 1.5.
@@ -213,26 +273,63 @@ fn far(subject: &Subject) -> Verdict {
 
 const SIDE: i32 = 16;
 const PIXELS: u32 = 192;
+const PLAN: Lattice =
+    Lattice { min: DVec3::ZERO, width: DVec3::ONE, resolution: IVec3::new(SIDE, SIDE, 1) };
 
-/// A fan of rays; the cells that they visit, the redder the later, and the rays on top.
-fn draw(subject: &Subject) -> Image {
-    let lattice =
-        Lattice { min: DVec3::ZERO, width: DVec3::ONE, resolution: IVec3::new(SIDE, SIDE, 1) };
-    let rays = [0.05_f64, 0.45, 0.785, 1.3].map(|angle| {
+/// A fan of rays in the plan, and one that comes back.
+fn rays() -> Vec<Ray> {
+    let fan = [0.05_f64, 0.45, 0.785, 1.3].map(|angle| {
         Ray::new(DVec3::new(0.6, 0.3, 0.5), DVec3::new(angle.cos(), angle.sin(), 0.0))
     });
     let back = Ray::new(DVec3::new(15.3, 9.7, 0.5), DVec3::new(-1.0, 0.55, 0.0));
-    let rays: Vec<Ray> = rays.into_iter().chain([back]).collect();
+    fan.into_iter().chain([back]).collect()
+}
+
+/// The cells that a ray visits, each with the t at which it is entered. A wrong step may come back for ever.
+fn visited(subject: &Subject, ray: &Ray) -> Vec<(IVec3, f64)> {
+    let first = Some((ray.origin.as_ivec3(), 0.0));
+    let next = |&(cell, _): &(IVec3, f64)| (subject.next_cell)(&PLAN, ray, cell);
+    std::iter::successors(first, next).take(3 * SIDE as usize).collect()
+}
+
+/// All cells of the plan in which the ray has a part, in the order of their parts: each is clipped by itself.
+fn clipped(ray: &Ray) -> Vec<(IVec3, f64)> {
+    let inside = |cell: IVec3| {
+        let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
+        for axis in 0..2 {
+            let planes = [cell[axis], cell[axis] + 1].map(f64::from);
+            let [a, b] = planes.map(|plane| (plane - ray.origin[axis]) / ray.direction[axis]);
+            (enter, leave) = (enter.max(a.min(b)), leave.min(a.max(b)));
+        }
+        (enter < leave).then_some((cell, enter))
+    };
+    let cells = (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| IVec3::new(x, y, 0)));
+    let mut cells: Vec<_> = cells.filter_map(inside).collect();
+    cells.sort_by(|a, b| a.1.total_cmp(&b.1));
+    cells
+}
+
+fn fan_of_the_picture(subject: &Subject) -> Verdict {
+    rays().iter().try_for_each(|ray| {
+        let (got, wanted) = (visited(subject, ray), clipped(ray));
+        for step in 1..=wanted.len() {
+            let [got, wanted] = [&got, &wanted].map(|cells| numbers(cells.get(step).copied()));
+            let case = || format!("{SIDE} × {SIDE} cells of 1; {}: step {step}", ray.shown());
+            within(1e-9, case, &got, &wanted)?;
+        }
+        Ok(())
+    })
+}
+
+/// A fan of rays; the cells that they visit, the redder the later, and the rays on top.
+fn draw(subject: &Subject) -> Image {
+    let rays = rays();
     let mut steps = [[None; SIDE as usize]; SIDE as usize];
     for ray in &rays {
-        let mut cell = Some((ray.origin.as_ivec3(), 0.0));
-        // A wrong step may come back for ever.
-        for count in 0..3 * SIDE {
-            let Some((at, _)) = cell else { break };
+        for (count, (at, _)) in (0_i32..).zip(visited(subject, ray)) {
             let row = steps.get_mut(at.y as usize);
             let Some(place) = row.and_then(|row| row.get_mut(at.x as usize)) else { break };
             *place = place.or(Some(count));
-            cell = (subject.next_cell)(&lattice, ray, at);
         }
     }
     painted(ImageSize::new(PIXELS, PIXELS), |x, y| {

@@ -1,12 +1,15 @@
 //! E4.7: the same answer as brute force.
 
 use glam::{DAffine3, DVec3};
-use lancer_accel::{Cell, Grid};
+use lancer_accel::{Bvh, Cell, Grid};
 use lancer_core::Rgb;
-use lancer_core::geometry::{Bounds3, Interval, Shear, intersect_triangle};
+use lancer_core::geometry::{Bounds3, Interval, Ray, Shear, intersect_triangle};
 use lancer_core::image::{Image, ImageSize};
-use lancer_core::scene::{PrimitiveId, Scene};
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Solution, Verdict, ensure, slips};
+use lancer_core::intersector::Intersector;
+use lancer_core::scene::{PrimaryRays, PrimitiveId, Scene};
+use lancer_exercise::{
+    Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, ensure, same, slips,
+};
 use lancer_lesson::picture::painted;
 
 use super::reference::search_cells;
@@ -49,8 +52,10 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "a hit outside the cell", run: outside },
         Check { name: "a tie in one cell", run: tie },
         Check { name: "a tie across two cells", run: tie_across },
+        Check { name: "almost a tie", run: almost },
         Check { name: "cells behind the hit", run: behind },
         Check { name: "no primitive twice", run: mailbox },
+        Check { name: "every ray of the picture", run: town },
     ],
     slips: slips! {
         search_cells(cells, test):
@@ -64,9 +69,20 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                 test(primitive).filter(|t| *t <= end)
             });
         "of a tie the first one found wins: it must be the smaller id, or the answer depends on the index":
-            "a tie in one cell" catches keep(cells, test, |(t, _), (best, _)| t < best);
+            "a tie in one cell" catches keep(cells, test, Memory::Tested, |(t, _), (best, _)| t < best);
         "of a tie the last one found wins":
-            "a tie in one cell" catches keep(cells, test, |(t, _), (best, _)| t <= best);
+            "a tie in one cell" catches keep(cells, test, Memory::Tested, |(t, _), (best, _)| t <= best);
+        "hits that differ by little count as a tie: only equal t are one":
+            "almost a tie" catches keep(cells, test, Memory::Tested, |(t, id), (best, best_id)| {
+                if (t - best).abs() < 1e-6 { id < best_id } else { t < best }
+            });
+        "the hits are compared in `f32`, which makes ties where there are none: keep to `f64`":
+            "almost a tie" catches keep(cells, test, Memory::Tested, |(t, id), (best, best_id)| {
+                (t as f32, id) < (best as f32, best_id)
+            });
+        "the smallest id wins, however far away: compare t first, and the ids of equal t":
+            "one cell, the closest of three" catches
+                keep(cells, test, Memory::Tested, |(_, id), (_, best)| id < best);
         "a cell that is entered just at the closest hit is left out: it may hold the smaller id":
             "a tie across two cells" catches {
                 let mut best: Option<Met> = None;
@@ -84,7 +100,11 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                 search_cells(&all.collect::<Vec<_>>(), test)
             };
         "a primitive in several cells is tested in each: remember what was tested (a mailbox)":
-            "no primitive twice" catches keep(cells, test, |met, best| met < best);
+            "no primitive twice" catches keep(cells, test, Memory::Nothing, |met, best| met < best);
+        "only the primitive tested last is remembered: the next cell may hold others that were tested":
+            "no primitive twice" catches keep(cells, test, Memory::Last, |met, best| met < best);
+        "only hits are remembered: a primitive that was missed is missed again in the next cell, at the same cost":
+            "no primitive twice" catches keep(cells, test, Memory::Hits, |met, best| met < best);
         "the first hit of a cell is taken, not the closest":
             "one cell, the closest of three" catches {
                 let mut all = cells.iter().flat_map(|cell| cell.primitives);
@@ -95,15 +115,39 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
     explain: None,
 };
 
-/// A search that tests whatever a cell holds, with another rule for which hit wins.
-fn keep(cells: &[Cell], test: &mut Test, wins: impl Fn(Met, Met) -> bool) -> Option<Met> {
-    let mut best: Option<Met> = None;
+/// Which primitives are not tested again.
+#[derive(Clone, Copy, PartialEq)]
+enum Memory {
+    Tested,
+    Hits,
+    Last,
+    Nothing,
+}
+
+/// A search with another memory, or another rule for which hit wins.
+fn keep(
+    cells: &[Cell],
+    test: &mut Test,
+    memory: Memory,
+    wins: impl Fn(Met, Met) -> bool,
+) -> Option<Met> {
+    let (mut best, mut known): (Option<Met>, Vec<PrimitiveId>) = (None, Vec::new());
     for cell in cells {
         if best.is_some_and(|(t, _)| cell.enter > t) {
             break;
         }
         for &primitive in cell.primitives {
-            let Some(t) = test(primitive) else { continue };
+            if known.contains(&primitive) {
+                continue;
+            }
+            let t = test(primitive);
+            if memory == Memory::Last {
+                known.clear();
+            }
+            if memory != Memory::Nothing && (memory != Memory::Hits || t.is_some()) {
+                known.push(primitive);
+            }
+            let Some(t) = t else { continue };
             if best.is_none_or(|best| wins((t, primitive), best)) {
                 best = Some((t, primitive));
             }
@@ -179,6 +223,16 @@ fn tie_across(subject: &Subject) -> Verdict {
     compare(subject, &[(1.0, &[1]), (2.0, &[0])], &met, Some((2.0, 0)), None)
 }
 
+/// Primitive 1 is closer by less than `f32` can tell.
+fn almost(subject: &Subject) -> Verdict {
+    for gap in [10, 30, 40].map(|bits| 2.0_f64.powi(-bits)) {
+        let met = [Some(1.5 + gap), Some(1.5)];
+        compare(subject, &[(1.0, &[0, 1])], &met, Some((1.5, 1)), None)?;
+        compare(subject, &[(1.0, &[1, 0])], &met, Some((1.5, 1)), None)?;
+    }
+    Ok(())
+}
+
 fn behind(subject: &Subject) -> Verdict {
     let met = [Some(1.5), Some(2.5), Some(3.5)];
     let cells: [(f64, &[u32]); 3] = [(1.0, &[0]), (2.0, &[1]), (3.0, &[2])];
@@ -192,23 +246,58 @@ fn mailbox(subject: &Subject) -> Verdict {
     compare(subject, &cells, &met, Some((3.5, 2)), Some(&[0, 1, 2]))
 }
 
-/// A town whose faces are all there twice, in the colours of the triangles that are hit.
-fn draw(subject: &Subject) -> Image {
-    let mut scene = scenes::family("town").scene(300);
-    let single = Scene::of_mesh(scene.mesh.clone());
-    scene.mesh.append(&single.mesh, DAffine3::IDENTITY, 0);
-    let grid = Grid::build(&scene);
-    let size = ImageSize::new(160, 120);
-    let rays = scene.camera.primary_rays(size);
-    painted(size, |x, y| {
-        let ray = rays.through(x, y);
+/// A town whose faces are all there twice, and the rays of the picture.
+struct Town {
+    scene: Scene,
+    rays: PrimaryRays,
+}
+
+impl Town {
+    const SIZE: ImageSize = ImageSize::new(160, 120);
+
+    fn new() -> Self {
+        let mut scene = scenes::family("town").scene(300);
+        let single = Scene::of_mesh(scene.mesh.clone());
+        scene.mesh.append(&single.mesh, DAffine3::IDENTITY, 0);
+        let rays = scene.camera.primary_rays(Self::SIZE);
+        Self { scene, rays }
+    }
+
+    /// What the subject finds in the cells of a grid.
+    fn search(&self, subject: &Subject, grid: &Grid, ray: &Ray) -> Option<Met> {
         let shear = Shear::new(ray.direction);
-        let cells: Vec<Cell> = grid.cells(&ray, Interval::POSITIVE).collect();
+        let cells: Vec<Cell> = grid.cells(ray, Interval::POSITIVE).collect();
         let mut test = |primitive: PrimitiveId| {
-            let corners: [DVec3; 3] = scene.mesh.corners(primitive.0 as usize);
-            intersect_triangle(corners, &ray, &shear).map(|hit| hit.t)
+            let corners: [DVec3; 3] = self.scene.mesh.corners(primitive.0 as usize);
+            intersect_triangle(corners, ray, &shear).map(|hit| hit.t)
         };
-        let met = (subject.search_cells)(&cells, &mut test);
+        (subject.search_cells)(&cells, &mut test)
+    }
+}
+
+/// A hierarchy finds the same: it has no cells.
+fn town(subject: &Subject) -> Verdict {
+    let town = Town::new();
+    let (grid, tree) = (Grid::build(&town.scene), Bvh::build(&town.scene));
+    let ImageSize { width, height, .. } = Town::SIZE;
+    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+        let ray = town.rays.through(f64::from(x) + 0.5, f64::from(y) + 0.5);
+        let got = town.search(subject, &grid, &ray).map(|(t, id)| (t, id.0));
+        let wanted = tree.closest_hit(&ray, Interval::POSITIVE);
+        let wanted = wanted.map(|hit| (hit.t, hit.primitive.0));
+        let case =
+            || format!("the picture's town, pixel {x} of row {y}; {}: t and id", ray.shown());
+        same(case, &got, &wanted)?;
+    }
+    Ok(())
+}
+
+/// The town in the colours of the triangles that are hit.
+fn draw(subject: &Subject) -> Image {
+    let town = Town::new();
+    let grid = Grid::build(&town.scene);
+    painted(Town::SIZE, |x, y| {
+        let met = town.search(subject, &grid, &town.rays.through(x, y));
         met.map_or(Rgb::splat(0.02), |(_, primitive)| color_of(primitive.0 as usize))
     })
 }

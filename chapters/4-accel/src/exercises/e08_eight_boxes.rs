@@ -5,7 +5,9 @@ use lancer_core::Rgb;
 use lancer_core::geometry::{Bounds3, Interval, Ray, Slabs};
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::sampling::Uniform;
-use lancer_exercise::{Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, ensure, slips};
+use lancer_exercise::{
+    Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, ensure, same, slips,
+};
 use lancer_lesson::picture::painted;
 
 use super::reference::{eight_boxes, near_to_far};
@@ -53,11 +55,13 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         Check { name: "behind the origin, and around it", run: behind },
         Check { name: "up to max, and beyond it", run: beyond },
         Check { name: "in a face", run: in_a_face },
+        Check { name: "by a hair past the boxes, or into them", run: by_a_hair },
         Check { name: "a corner that eight boxes share", run: corner },
         Check { name: "as one box after the other", run: one_by_one },
         Check { name: "near to far", run: order },
         Check { name: "only the lanes that are met", run: only_met },
         Check { name: "entered at the same t", run: ties },
+        Check { name: "every ray of the picture", run: two_levels },
     ],
     slips: slips! {
         eight_boxes(planes, ray, max):
@@ -65,15 +69,34 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
          highest first":
             "backwards along each axis" catches
                 clip(planes, ray, [0.0, max], |low, high, _| [low, high]);
-        "`min` and `max` sort the two planes: in an empty lane, lowest ∞ and highest −∞, that makes a box of \
-         everything":
+        "the two planes are sorted by their t: in an empty lane, lowest ∞ and highest −∞, that makes a box of \
+         everything. The sign of the inverse says which comes first":
             "empty lanes" catches
                 clip(planes, ray, [0.0, max], |low, high, _| [low.min(high), low.max(high)]);
+        "the rows are read in another order: they are lowest x, highest x, lowest y, highest y, lowest z, highest z":
+            "forwards" catches {
+                let [a, b, c, d, e, f] = *planes;
+                eight_boxes(&[a, d, b, e, c, f], ray, max)
+            };
+        "the bits are in the opposite order: lane 0 is the lowest bit, 1 << 0":
+            "forwards" catches {
+                let (near, met) = eight_boxes(planes, ray, max);
+                (near, met.reverse_bits() >> 24)
+            };
+        "a box that is met at one t only is left out: compare near with far by ≤, not by <":
+            "behind the origin, and around it" catches {
+                let ranges = clipped(planes, ray, [0.0, max], in_order);
+                answer(ranges, |near, far| near < far)
+            };
+        "something fixed is added to the far t: the offsets hold all that rounding needs, and boxes that are missed by \
+         less than that count now":
+            "by a hair past the boxes, or into them" catches {
+                let ranges = clipped(planes, ray, [0.0, max], in_order);
+                answer(ranges, |near, far| near <= far + 1e-3 && near <= max)
+            };
         "the range does not begin at 0: boxes behind the origin count":
             "behind the origin, and around it" catches
-                clip(planes, ray, [f32::NEG_INFINITY, max], |low, high, turned| {
-                    if turned { [high, low] } else { [low, high] }
-                });
+                clip(planes, ray, [f32::NEG_INFINITY, max], in_order);
         "`max` is not looked at: boxes beyond the closest hit count":
             "up to max, and beyond it" catches eight_boxes(planes, ray, f32::INFINITY);
         "the near offset is taken for the last planes: a box that is only touched may, once rounded, be left \
@@ -88,6 +111,21 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         near_to_far(near, met):
         "all eight lanes are put in order, whether their bit is set or not":
             "only the lanes that are met" catches near_to_far(near, 0xff);
+        "the lanes are in the order of their numbers: sort them by the t at which they are entered":
+            "near to far" catches (0..8).filter(|lane| met >> lane & 1 == 1).collect();
+        "the farthest comes first: what is near often makes the rest superfluous":
+            "near to far" catches {
+                let mut lanes = near_to_far(near, met);
+                lanes.sort_by(|&a, &b| near[b].total_cmp(&near[a]));
+                lanes
+            };
+        "t is cut to a whole number before it is compared: 0.25 and 0.5 become equal. Floats compare by `total_cmp`":
+            "near to far" catches {
+                let mut lanes = near_to_far(near, met);
+                lanes.sort();
+                lanes.sort_by_key(|&lane| near[lane] as i32);
+                lanes
+            };
         "of lanes at the same t the larger number comes first: sort near to far, from the lower lanes on, by a \
          sort that keeps equal ones in order":
             "entered at the same t" catches {
@@ -101,23 +139,41 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
     explain: None,
 };
 
-/// A test of eight boxes by the range to clip and by which of a slab's planes it takes for the first and the
-/// last: from the products of the lowest and the highest with the inverse, and whether that is negative.
+/// What eight boxes leave of a range, by which of a slab's planes is taken for the first and the last: from the
+/// products of the lowest and the highest with the inverse, and whether that is negative.
+fn clipped(
+    planes: &[Lanes; 6],
+    ray: &PreparedRay,
+    range: [f32; 2],
+    slab: impl Fn(f32, f32, bool) -> [f32; 2],
+) -> [[f32; 2]; 8] {
+    std::array::from_fn(|lane| {
+        (0..3).fold(range, |[near, far], k| {
+            let [low, high] = [2 * k, 2 * k + 1].map(|row| planes[row][lane] * ray.inverse[k]);
+            let [first, last] = slab(low, high, ray.inverse[k] < 0.0);
+            [near.max(first + ray.near_offset[k]), far.min(last + ray.far_offset[k])]
+        })
+    })
+}
+
+fn in_order(low: f32, high: f32, turned: bool) -> [f32; 2] {
+    if turned { [high, low] } else { [low, high] }
+}
+
+/// Where ranges begin, and the bits of those that are met.
+fn answer(ranges: [[f32; 2]; 8], is_met: impl Fn(f32, f32) -> bool) -> (Lanes, u32) {
+    let bit = |lane: usize| u32::from(is_met(ranges[lane][0], ranges[lane][1])) << lane;
+    (ranges.map(|[near, _]| near), (0..8).map(bit).sum())
+}
+
+/// A test of eight boxes by another range, or other planes.
 fn clip(
     planes: &[Lanes; 6],
     ray: &PreparedRay,
     range: [f32; 2],
     slab: impl Fn(f32, f32, bool) -> [f32; 2],
 ) -> (Lanes, u32) {
-    let ranges: [[f32; 2]; 8] = std::array::from_fn(|lane| {
-        (0..3).fold(range, |[near, far], k| {
-            let [low, high] = [2 * k, 2 * k + 1].map(|row| planes[row][lane] * ray.inverse[k]);
-            let [first, last] = slab(low, high, ray.inverse[k] < 0.0);
-            [near.max(first + ray.near_offset[k]), far.min(last + ray.far_offset[k])]
-        })
-    });
-    let bit = |lane: usize| u32::from(ranges[lane][0] <= ranges[lane][1]) << lane;
-    (ranges.map(|[near, _]| near), (0..8).map(bit).sum())
+    answer(clipped(planes, ray, range, slab), |near, far| near <= far)
 }
 
 /// A box in each lane, or none.
@@ -252,8 +308,11 @@ fn behind(subject: &Subject) -> Verdict {
         None,
     ];
     let ray = Ray::new(DVec3::ZERO, DVec3::new(1.0, 0.5, 0.25));
-    let t = [None, None, None, Some(0.5), Some(0.0), Some(0.0), Some(0.0), None];
-    compare(subject, &boxes, &ray, 8.0, t)
+    let mut t = [None, None, None, Some(0.5), Some(0.0), Some(0.0), Some(0.0), None];
+    compare(subject, &boxes, &ray, 8.0, t)?;
+    // Up to t = 0 the ray is its origin only.
+    t[3] = None;
+    compare(subject, &boxes, &ray, 0.0, t)
 }
 
 /// A row of boxes that begin at t = 1, 1.25, 1.5 and so on.
@@ -292,6 +351,16 @@ fn in_a_face(subject: &Subject) -> Verdict {
         }
     }
     Ok(())
+}
+
+/// x is left at t = 1, and z reached so much later in four lanes, so much earlier in the others; the pads are less.
+fn by_a_hair(subject: &Subject) -> Verdict {
+    let late = [6, 8, 10, 12].map(|bits| 2.0_f64.powi(-bits));
+    let late: [f64; 8] =
+        std::array::from_fn(|lane| if lane < 4 { late[lane] } else { -late[lane - 4] });
+    let boxes = late.map(|z| bounds([-0.5, -1.0, z], [0.0, 1.0, 0.5]));
+    let t = late.map(|late| (late < 0.0).then_some(1.0 + late));
+    compare(subject, &boxes, &Ray::new(DVec3::NEG_ONE, DVec3::ONE), 8.0, t)
 }
 
 /// The point, the direction and t are dyadic, so the origin is exact and the ray passes through the point:
@@ -392,6 +461,7 @@ fn ties(subject: &Subject) -> Verdict {
 
 /// Nodes of two levels: the first holds eight others, one in each octant, and these the boxes.
 struct Nodes {
+    boxes: [Boxes; 8],
     root: [Lanes; 6],
     below: [[Lanes; 6]; 8],
 }
@@ -412,10 +482,8 @@ impl Nodes {
         });
         let around =
             |boxes: &Boxes| boxes.iter().flatten().copied().fold(Bounds3::EMPTY, Bounds3::union);
-        Self {
-            root: rows(&boxes.map(|boxes| Some(around(&boxes)))),
-            below: boxes.map(|b| rows(&b)),
-        }
+        let root = rows(&boxes.map(|boxes| Some(around(&boxes))));
+        Self { root, below: boxes.map(|boxes| rows(&boxes)), boxes }
     }
 
     /// Where a ray meets the first box, infinite if it meets none, and how many nodes it tests.
@@ -437,17 +505,50 @@ impl Nodes {
     }
 }
 
-/// Left the distance of the boxes, right the number of nodes tested, red from 5 on.
-fn draw(subject: &Subject) -> Image {
-    let nodes = Nodes::new();
+/// The side of the picture's left half, and of its right one.
+const SIDE: u32 = 160;
+
+/// The ray of a pixel of the picture's left half.
+fn ahead(x: f64, y: f64) -> Ray {
+    let half = f64::from(SIDE / 2);
     let eye = DVec3::new(1.3, 1.7, 2.6);
     let ahead = -eye.normalize();
     let right = ahead.cross(DVec3::Y).normalize();
-    let up = right.cross(ahead);
-    painted(ImageSize::new(320, 160), |x, y| {
-        let at = right * (x % 160.0 - 80.0) + up * (80.0 - y);
-        let (t, tested) = nodes.look(subject, &Ray::new(eye, ahead + at / 175.0));
-        if x < 160.0 {
+    let at = right * (x - half) + right.cross(ahead) * (half - y);
+    Ray::new(eye, ahead + at / 175.0)
+}
+
+/// The first of all boxes in `f64`, and no more nodes than the reference tests.
+fn two_levels(subject: &Subject) -> Verdict {
+    let nodes = Nodes::new();
+    let right = Subject { eight_boxes, near_to_far, ..*subject };
+    for (x, y) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))) {
+        let ray = ahead(f64::from(x) + 0.5, f64::from(y) + 0.5);
+        let case = || format!("the picture's boxes, pixel {x} of row {y}; {}", ray.shown());
+        let (t, tested) = nodes.look(subject, &ray);
+        let slabs = Slabs::new(&ray);
+        let all = nodes.boxes.iter().flatten().flatten();
+        let entered = all.filter_map(|b| slabs.enter(b.min, b.max, Interval::POSITIVE));
+        let first = entered.fold(f64::INFINITY, f64::min);
+        // Where a box is just missed, its pad may be met.
+        let (fair_t, fair) = nodes.look(&right, &ray);
+        if fair_t.is_finite() && t.is_finite() && first.is_finite() {
+            judge_near(case, t, first)?;
+        } else {
+            same(|| case() + ": t", &f64::from(t), &f64::from(fair_t))?;
+        }
+        same(|| case() + ": nodes tested", &tested, &fair)?;
+    }
+    Ok(())
+}
+
+/// Left the distance of the boxes, right the number of nodes tested, red from 5 on.
+fn draw(subject: &Subject) -> Image {
+    let nodes = Nodes::new();
+    let half = f64::from(SIDE);
+    painted(ImageSize::new(2 * SIDE, SIDE), |x, y| {
+        let (t, tested) = nodes.look(subject, &ahead(x % half, y));
+        if x < half {
             return Rgb::splat(((4.4 - f64::from(t)) / 3.0).max(0.0));
         }
         let part = (f64::from(tested - 1) / 4.0).min(1.0);

@@ -380,7 +380,7 @@ fn plan() -> Row {
             pen.label([0.5, 0.1], [0.0, 0.0], Text::new(title.clone(), HEADING).bold());
             let legend = [
                 ("in the beam", category_color(0)),
-                ("tested, beside it", category_color(1)),
+                ("tested, outside it", category_color(1)),
                 ("never looked at", MUTED),
             ];
             for (k, (text, color)) in legend.into_iter().enumerate() {

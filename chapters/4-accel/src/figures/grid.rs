@@ -145,7 +145,7 @@ impl Measured {
             && others.iter().all(|(_, _, work)| !work.wrong);
         let claim = format!(
             "More cells mean fewer primitive tests and more steps: their sum has one minimum, {} per ray at {} cells per \
-             triangle, but with a teapot in a stadium the best grid of all costs {} times as much as the dearest tree.",
+             triangle, but with a teapot in a stadium the best grid of all costs {} times as much as the most expensive tree.",
             number(lowest.sum().round()),
             number(lowest.density),
             number(lost.round()),

@@ -152,7 +152,7 @@ pub fn make(effort: Effort) -> Finished {
     let plate = Plate::new("4.8", "Where each structure works", claim, holds)
         .panel(montage)
         .note("Numbers", format!(
-            "means over all pixels, and the dearest pixel. The least sum here has « {} », but counts are not seconds: \
+            "means over all pixels, and the most expensive pixel. The least sum here has « {} », but counts are not seconds: \
              a hierarchy tests 4 or 8 boxes at once, and a ray past the town costs it those of its root, while a \
              subdivision compares its own box uncounted",
             least.name,
