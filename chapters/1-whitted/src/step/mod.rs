@@ -215,7 +215,8 @@ impl Walker<'_> {
         )
         .line(format!("{shape}, from its {side}"))
         .line(format!("point     {}", to.shown()))
-        .line(format!("N         {}, unit, on the ray's side", n.shown()))
+        // A sum with 0 is no −0.
+        .line(format!("N         {}, unit, on the ray's side", (n + DVec3::ZERO).shown()))
         .line(format!("emission  {}", terms.emission.shown()))
         .line(format!(
             "ambient   ρ_d I_a = {} {} = {}",

@@ -1,3 +1,5 @@
+//! Polygons, in space and as files have them, cut into triangles.
+
 mod ears;
 #[cfg(test)]
 mod tests;

@@ -174,7 +174,7 @@ fn libraries_elsewhere_are_looked_for_beside_the_model() {
     };
     let paths = [
         "../m.mtl",
-        "/home/me/m.mtl",
+        "/elsewhere/m.mtl",
         "lib/../../m.mtl",
         "..\\m.mtl",
         "C:\\Users\\me\\m.mtl",
