@@ -185,33 +185,7 @@ impl Student {
     fn check_one(&mut self, entry: &Entry, all: bool) -> Result<Checked> {
         let name = entry.card.name;
         let how = if all { "check-all" } else { "check" };
-        let mut checked = self.ask(entry, &[how, name])?;
-        if checked.passes {
-            checked.text.push_str(&wrapped(&self.wrong_ones_used(entry)?));
-        }
-        Ok(checked)
-    }
-
-    /// A word for each exercise that an answer calls and that is begun but not right: the checks of the one
-    /// need not notice what is wrong with the other.
-    fn wrong_ones_used(&mut self, entry: &Entry) -> Result<String> {
-        let code = std::fs::read_to_string(self.workspace.path(entry)).unwrap_or_default();
-        let mut text = String::new();
-        for other in self.workspace.started() {
-            let is_called = |function: &&str| code.contains(&format!("yours::{function}"));
-            if other.chapter == entry.chapter
-                && other.card.functions.iter().any(is_called)
-                && self.state(&other)? != State::Passing
-            {
-                let _ = writeln!(
-                    text,
-                    "But it calls your {}, which does not pass: cargo xtask exercise check {}",
-                    other.title(),
-                    other.card.name
-                );
-            }
-        }
-        Ok(text)
+        self.ask(entry, &[how, name])
     }
 
     /// How many exercises pass, and of how many.
