@@ -308,7 +308,9 @@ fn a_student_goes_wrong_in_many_ways_and_then_right() {
     let said = student.failed(&["check"]);
     assert!(said.contains("takes more than 2 GiB of memory"), "{said}");
 
-    let other = "std::process::Command::new(\"sleep\").arg(\"30\").spawn().unwrap();";
+    // The picture calls the function for each of its pixels.
+    let other = "static ONCE: std::sync::Once = std::sync::Once::new();
+    ONCE.call_once(|| drop(std::process::Command::new(\"sleep\").arg(\"30\").spawn()));";
     student.answer(&format!("{other} {RIGHT}"));
     let said = student.accepted(&["check"]);
     assert!(said.contains("A process that your program has started still runs."), "{said}");

@@ -10,7 +10,7 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 use insta::assert_snapshot;
-use lancer_core::image::{Image, load};
+use lancer_core::image::{Image, ImageSize, load};
 use tempfile::{TempDir, tempdir};
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
