@@ -114,6 +114,7 @@ impl Branches {
     }
 
     /// k_s and k_t of `eq:recursion`, once it is known whether the reflection is total.
+    #[inline]
     pub fn shares(&self) -> [Rgb; 2] {
         [self.mirror, self.refracted].map(|branch| branch.map_or(Rgb::ZERO, |(share, _)| share))
     }

@@ -11,7 +11,7 @@ use serde_json::Value;
 use super::catalogue::{Chapter, Entry};
 use super::process::{Limits, run};
 use super::words::wrapped;
-use super::workspace::{Workspace, course_target, package};
+use super::workspace::{Workspace, package};
 use crate::repository::root;
 
 /// Why a program could not be compiled.
@@ -40,12 +40,11 @@ pub fn build(
     cargo
         .args(["build", "--message-format=json-diagnostic-rendered-ansi"])
         .args(["--package", "xtask", "--package", "lancer-student"])
-        .args(["--features", "lancer-student/begun", "--bin", &package, "--target-dir"])
-        .arg(course_target())
+        .args(["--features", "lancer-student/begun", "--bin", &package])
         // As this program itself was.
         .args(["--profile", if cfg!(debug_assertions) { "dev" } else { "release" }])
         .env("LANCER_PROGRAM", workspace.sources(chapter).join("main.rs"))
-        .env("LANCER_CONTENTS", workspace.contents(started).to_string())
+        .env("LANCER_CONTENTS", workspace.contents(chapter).to_string())
         .current_dir(root());
     let ended = run(&mut cargo, Limits::OF_CARGO).context("cannot start cargo")?;
     let messages: Vec<Value> =

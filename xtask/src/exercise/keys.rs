@@ -4,19 +4,17 @@ use std::io::{IsTerminal, Read, stdin};
 use std::sync::mpsc::{self, Receiver};
 use std::thread;
 
-/// The keys typed at a terminal: at once where the system lets us, after Enter where it does not.
-pub struct Keys {
-    typed: Receiver<u8>,
-    _unbuffered: unbuffered::Guard,
-}
+pub use terminal::Unbuffered;
+
+/// The keys typed at a terminal: at once where it is [`Unbuffered`], else after Enter.
+pub struct Keys(Receiver<u8>);
 
 impl Keys {
-    /// Listens, if there is a terminal.
+    /// Listens, if there is a terminal, and this program is the one that it talks to.
     pub fn listen() -> Option<Self> {
-        if !stdin().is_terminal() {
+        if !stdin().is_terminal() || !terminal::is_ours() {
             return None;
         }
-        let guard = unbuffered::Guard::new();
         let (sender, typed) = mpsc::channel();
         thread::spawn(move || {
             for byte in stdin().lock().bytes().map_while(Result::ok) {
@@ -25,25 +23,31 @@ impl Keys {
                 }
             }
         });
-        Some(Self { typed, _unbuffered: guard })
+        Some(Self(typed))
     }
 
     /// The next key that has been typed.
     pub fn next(&self) -> Option<char> {
-        self.typed.try_recv().ok().map(|byte| char::from(byte).to_ascii_lowercase())
+        self.0.try_recv().ok().map(|byte| char::from(byte).to_ascii_lowercase())
     }
 }
 
 #[cfg(unix)]
-mod unbuffered {
+mod terminal {
     use std::io::stdin;
 
-    use rustix::termios::{LocalModes, OptionalActions, Termios, tcgetattr, tcsetattr};
+    use rustix::process::getpgrp;
+    use rustix::termios::{LocalModes, OptionalActions, Termios, tcgetattr, tcgetpgrp, tcsetattr};
+
+    /// A program in the background is stopped when it changes the terminal.
+    pub fn is_ours() -> bool {
+        tcgetpgrp(stdin()).map_or(true, |group| group == getpgrp())
+    }
 
     /// A terminal that hands on each key at once and does not show it, up to the drop. Ctrl-C stays what it is.
-    pub struct Guard(Option<Termios>);
+    pub struct Unbuffered(Option<Termios>);
 
-    impl Guard {
+    impl Unbuffered {
         pub fn new() -> Self {
             let before = tcgetattr(stdin()).ok();
             if let Some(mut modes) = before.clone() {
@@ -55,7 +59,7 @@ mod unbuffered {
         }
     }
 
-    impl Drop for Guard {
+    impl Drop for Unbuffered {
         fn drop(&mut self) {
             if let Some(before) = &self.0 {
                 let _ = tcsetattr(stdin(), OptionalActions::Now, before);
@@ -65,11 +69,15 @@ mod unbuffered {
 }
 
 #[cfg(not(unix))]
-mod unbuffered {
-    /// Keys come after Enter.
-    pub struct Guard;
+mod terminal {
+    pub fn is_ours() -> bool {
+        true
+    }
 
-    impl Guard {
+    /// Keys come after Enter.
+    pub struct Unbuffered;
+
+    impl Unbuffered {
         pub fn new() -> Self {
             Self
         }

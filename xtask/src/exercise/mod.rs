@@ -16,7 +16,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use clap::Subcommand;
-use lancer_exercise::Solution;
+use lancer_exercise::{Card, Solution};
 
 use crate::repository::root;
 use build::shown;
@@ -146,7 +146,11 @@ fn report(checked: &Checked) -> ExitCode {
 /// Says what to do after an exercise has passed.
 fn say_next(next: Option<&Entry>) {
     match next {
-        Some(next) => say!("Next: {}, cargo xtask exercise start {}", next.title(), next.card.name),
+        Some(next) => say_wrapped(&format!(
+            "Next: {}, cargo xtask exercise start {}",
+            next.title(),
+            next.card.name
+        )),
         None => say!("All exercises pass."),
     }
 }
@@ -166,13 +170,16 @@ fn chosen(choice: &Choice, student: &mut Student) -> Result<Option<Entry>> {
 fn list(student: &mut Student) -> Result<()> {
     let next = student.first_not_passing()?.map(|entry| entry.card.id);
     let entries = entries();
-    let longest = entries.iter().map(|entry| entry.card.title.chars().count()).max().unwrap_or(0);
+    let longest = |of: fn(&Card) -> &'static str| {
+        entries.iter().map(|entry| of(&entry.card).chars().count()).max().unwrap_or(0)
+    };
+    let (name, title) = (longest(|card| card.name), longest(|card| card.title));
     for entry in &entries {
         let state = student.state(entry)?;
         let card = entry.card;
         let mark = if next == Some(card.id) { "→" } else { " " };
         say!(
-            "{mark} {:<6} {:<16} {:<longest$} {:>3} min  {}",
+            "{mark} {:<5} {:<name$} {:<title$} {:>3} min  {}",
             card.id,
             card.name,
             card.title,
@@ -228,8 +235,8 @@ fn say_solution(student: &mut Student, entry: &Entry) -> Result<()> {
         _ => say!("{}: yours, in {path}, does not pass yet", entry.title()),
     }
     say!("Ours, a whole file that could stand in its place:\n\n{answer}");
-    say!("The course's own code does the same in {file}:{line}, `{item}`");
-    say!("Notice: {notice}");
+    say_wrapped(&format!("The course's own code does the same in {file}:{line}, `{item}`"));
+    say_wrapped(&format!("Notice: {notice}"));
     Ok(())
 }
 

@@ -36,7 +36,7 @@ impl State {
             Self::Started => "started",
             Self::Wrong => "wrong",
             Self::Passing => "passing",
-            Self::Broken => "does not compile",
+            Self::Broken => "not compiling",
             Self::Unknown => "unknown",
         }
     }
@@ -55,6 +55,8 @@ pub struct Checked {
 /// A student's folder and the programs made of it.
 pub struct Student {
     workspace: Workspace,
+    /// What the programs have said of the exercises, by their names.
+    states: Vec<(&'static str, State)>,
     programs: Vec<(Chapter, Result<PathBuf, Vec<Broken>>)>,
 }
 
@@ -66,7 +68,7 @@ impl Student {
     pub fn open() -> Result<Self> {
         let workspace = Workspace::open()?;
         workspace.refresh()?;
-        Ok(Self { workspace, programs: Vec::new() })
+        Ok(Self { workspace, states: Vec::new(), programs: Vec::new() })
     }
 
     /// The folder.
@@ -99,18 +101,30 @@ impl Student {
             return Ok(State::New);
         }
         let name = entry.card.name;
-        Ok(match self.program(entry.chapter)? {
+        if let Some((_, state)) = self.states.iter().find(|(known, _)| *known == name) {
+            return Ok(*state);
+        }
+        let program = match self.program(entry.chapter)? {
+            Ok(program) => program.clone(),
             Err(broken) if broken.iter().any(|broken| broken.exercise == Some(name)) => {
-                State::Broken
+                return Ok(State::Broken);
             }
-            Err(_) => State::Unknown,
-            Ok(program) => match ask(program, &["status", name])?.text.lines().last() {
-                Some("passing") => State::Passing,
-                Some("unwritten") => State::Started,
-                // It may have crashed.
-                _ => State::Wrong,
-            },
-        })
+            Err(_) => return Ok(State::Unknown),
+        };
+        // One run judges all of a chapter; where it crashes, it says nothing of the rest.
+        let is_unknown = |name: &&str| !self.states.iter().any(|(known, _)| known == name);
+        let started = self.workspace.started().into_iter();
+        let of_chapter = started.filter(|other| other.chapter == entry.chapter);
+        let names: Vec<&str> = of_chapter.map(|other| other.card.name).filter(is_unknown).collect();
+        for asked in [&names[..], &[name]] {
+            let answer = ask(&program, &[&["status"], asked].concat())?;
+            self.states.extend(states(&answer.text, asked));
+            if let Some((_, state)) = self.states.iter().find(|(known, _)| *known == name) {
+                return Ok(*state);
+            }
+        }
+        self.states.push((name, State::Wrong));
+        Ok(State::Wrong)
     }
 
     /// The first exercise, in the course's order, that is not passing; where the files do not compile, the
@@ -143,11 +157,10 @@ impl Student {
         }
         self.require_started(None)?;
         let started = self.workspace.started();
-        let mut last_edited = None;
         let mut passing = Vec::new();
         for entry in &started {
-            let mut checked = self.check_one(entry, all)?;
-            if !checked.passes {
+            if self.state(entry)? != State::Passing {
+                let mut checked = self.check_one(entry, all)?;
                 // Whoever has just mended one waits for a word about it, not about the next.
                 if !passing.is_empty() {
                     checked.text.insert_str(0, &format!("Right: {}\n", passing.join(", ")));
@@ -155,12 +168,9 @@ impl Student {
                 return Ok(checked);
             }
             passing.push(entry.card.id);
-            let edited = self.workspace.edited(entry);
-            if last_edited.as_ref().is_none_or(|(latest, _)| *latest <= edited) {
-                last_edited = Some((edited, checked));
-            }
         }
-        last_edited.map(|(_, checked)| checked).context("the files of the exercises are gone")
+        let last = started.into_iter().max_by_key(|entry| self.workspace.edited(entry));
+        self.check_one(&last.context("the files of the exercises are gone")?, all)
     }
 
     /// Refuses an exercise that the student has no file for, and if none is named, to have none at all.
@@ -212,6 +222,8 @@ impl Student {
             std::fs::create_dir_all(folder)
                 .with_context(|| format!("cannot make the folder {}", folder.display()))?;
         }
+        // A picture that is there is the one of these functions.
+        let _ = std::fs::remove_file(&figure);
         self.ask(entry, &["show", entry.card.name, &shown(&figure)])
     }
 
@@ -270,5 +282,34 @@ impl Student {
             ),
         });
         Ok(text)
+    }
+}
+
+/// What a program says of the exercises that it was asked for, in lines `state NAME STATE`; a student's own words may
+/// stand between them.
+fn states(text: &str, asked: &[&'static str]) -> Vec<(&'static str, State)> {
+    let state = |line: &str| {
+        let (name, word) = line.strip_prefix("state ")?.split_once(' ')?;
+        let name = asked.iter().find(|asked| **asked == name)?;
+        let state = match word {
+            "passing" => State::Passing,
+            "unwritten" => State::Started,
+            "wrong" => State::Wrong,
+            _ => return None,
+        };
+        Some((*name, state))
+    };
+    text.lines().filter_map(state).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn states_stand_among_a_students_own_words() {
+        let text = "x = 3\nstate a passing\nstate of things\nstate c passing\nstate b unwritten\nA process …\n";
+        let found = states(text, &["a", "b"]);
+        assert_eq!(found, [("a", State::Passing), ("b", State::Started)]);
     }
 }

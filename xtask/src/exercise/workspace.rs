@@ -84,13 +84,23 @@ impl Workspace {
         entries().into_iter().filter(|entry| self.is_started(entry)).collect()
     }
 
-    /// A number for what stands in the files of these exercises and in their program.
-    pub fn contents(&self, started: &[Entry]) -> u64 {
+    /// A number for what stands in a chapter's program: in every file below its sources.
+    pub fn contents(&self, chapter: Chapter) -> u64 {
         let mut hasher = DefaultHasher::new();
-        for entry in started {
-            // Whoever compiles a file that cannot be read says so.
-            let text = fs::read(self.path(entry)).ok();
-            (entry.card.id, text).hash(&mut hasher);
+        let mut folders = vec![self.sources(chapter)];
+        while let Some(folder) = folders.pop() {
+            // Whoever compiles what cannot be read says so.
+            let entries = folder.read_dir().into_iter().flatten().flatten();
+            let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
+            paths.sort_unstable();
+            for path in paths {
+                if path.is_dir() {
+                    folders.push(path);
+                } else if path.extension().is_some_and(|extension| extension == "rs") {
+                    fs::read(&path).ok().hash(&mut hasher);
+                    path.hash(&mut hasher);
+                }
+            }
         }
         hasher.finish()
     }
@@ -233,8 +243,8 @@ pub fn package(chapter: Chapter) -> String {
     format!("my-{}", chapter.package)
 }
 
-/// Where the course itself is compiled to, and the student's programs with it.
-pub fn course_target() -> PathBuf {
+/// Where the course itself is compiled to.
+fn course_target() -> PathBuf {
     let target =
         env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
     std::path::absolute(&target).unwrap_or(target)
