@@ -222,7 +222,7 @@ fn there_are_three_hints_and_an_answer() {
     The answer: cargo xtask exercise solution reflected-ray
     ");
     let solution = student.accepted(&["solution", "1.6"]);
-    let (answer, place) = solution.split_once("\nThe course's own code does the same in ").unwrap();
+    let (answer, place) = solution.split_once("\nThe course's own code: ").unwrap();
     assert!(
         answer.starts_with("E1.6 reflected-ray: you have not begun this one\nOurs, a whole file")
     );

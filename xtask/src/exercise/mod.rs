@@ -235,7 +235,7 @@ fn say_solution(student: &mut Student, entry: &Entry) -> Result<()> {
         _ => say!("{}: yours, in {path}, does not pass yet", entry.title()),
     }
     say!("Ours, a whole file that could stand in its place:\n\n{answer}");
-    say_wrapped(&format!("The course's own code does the same in {file}:{line}, `{item}`"));
+    say_wrapped(&format!("The course's own code: {file}:{line}, `{item}`"));
     say_wrapped(&format!("Notice: {notice}"));
     Ok(())
 }

@@ -3,6 +3,8 @@
 use textwrap::{Options, core::display_width, wrap};
 
 const WIDTH: usize = 80;
+/// A space at which no line is broken.
+const GLUE: &str = "\u{a0}";
 const GREEN: &str = "\u{1b}[32m";
 const RED: &str = "\u{1b}[31m";
 const PLAIN: &str = "\u{1b}[0m";
@@ -26,10 +28,23 @@ pub fn wrapped(text: &str) -> String {
             .subsequent_indent(&indent)
             .break_words(false)
             .word_splitter(textwrap::WordSplitter::NoHyphenation);
-        wrap(line, options).join("\n")
+        wrap(&with_whole_tuples(line), options).join("\n").replace(GLUE, " ")
     };
     let lines: Vec<String> = text.lines().map(wrapped).collect();
     lines.join("\n") + if text.ends_with('\n') { "\n" } else { "" }
+}
+
+/// Glues what stands in short parentheses: a vector is one word.
+fn with_whole_tuples(line: &str) -> String {
+    let mut parts = line.split('(');
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (inside, after) = part.split_once(')').map_or(("", part), |(inside, _)| {
+            part.split_at(if inside.len() <= WIDTH / 2 { inside.len() } else { 0 })
+        });
+        text.extend(["(", &inside.replace(' ', GLUE), after]);
+    }
+    text
 }
 
 /// Where a line's words begin: after its spaces, its mark and, in a row of two columns, the first of them.
@@ -72,6 +87,24 @@ mod tests {
         for line in ["a  b", "", "  ✓ a check", &path] {
             assert_eq!(wrapped(line), line);
         }
+    }
+
+    #[test]
+    fn vectors_are_not_broken() {
+        let line = format!(
+            "{} (0.5, 0.25, 1), (an aside of {})",
+            "word ".repeat(14),
+            "many words ".repeat(8)
+        );
+        let wrapped = wrapped(&line);
+        assert!(
+            wrapped.lines().nth(1).unwrap().starts_with("(0.5, 0.25, 1), (an aside of many"),
+            "{wrapped}"
+        );
+        assert_eq!(
+            wrapped.split_whitespace().collect::<Vec<_>>(),
+            line.split_whitespace().collect::<Vec<_>>()
+        );
     }
 
     #[test]
