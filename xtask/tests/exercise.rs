@@ -212,12 +212,12 @@ fn unknown_exercises_and_hints_are_refused() {
 fn there_are_three_hints_and_an_answer() {
     let student = Student::new();
     assert_snapshot!(student.accepted(&["hint", "1.6"]), @r"
-    E1.6 reflected-ray, hint 1 of 3: Split V into a part along N and a part along
+    E1.6 reflected-ray, hint 1 of 3: Split D into a part along N and a part along
     the surface. A mirror turns one of them around.
     More: cargo xtask exercise hint reflected-ray -n 2
     ");
     assert_snapshot!(student.accepted(&["hint", "1.6", "-n", "3"]), @r"
-    E1.6 reflected-ray, hint 3 of 3: `n.dot(incident)` is N·V; take twice that many
+    E1.6 reflected-ray, hint 3 of 3: `n.dot(incident)` is N·D; take twice that many
     `n` away from `incident`.
     The answer: cargo xtask exercise solution reflected-ray
     ");

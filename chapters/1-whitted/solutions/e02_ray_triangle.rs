@@ -5,6 +5,7 @@ use chapter_1::exercises::prelude::*;
 /// Where a ray meets a triangle, from either side: t, and the weights of the corners a, b and c there.
 pub fn ray_triangle(corners: [DVec3; 3], ray: &Ray) -> Option<Meeting> {
     let [a, b, c] = corners.map(|corner| sheared(corner, ray));
+    // E_A, E_B and E_C.
     let (u, v, w) = (edge(b, c), edge(c, a), edge(a, b));
     if u.min(v).min(w) < 0.0 && u.max(v).max(w) > 0.0 {
         return None;

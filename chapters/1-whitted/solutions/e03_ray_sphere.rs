@@ -2,7 +2,7 @@
 
 use chapter_1::exercises::prelude::*;
 
-/// A difference F·F − r² below this share of the sum F·F + r² is rounding noise: count it as 0.
+/// With F = origin − centre, a difference F·F − r² below this share of F·F + r² is rounding noise: count it as 0.
 const NOISE: f64 = 1e-15;
 
 /// The smallest t > 0 at which a ray meets a sphere, from outside or from inside.

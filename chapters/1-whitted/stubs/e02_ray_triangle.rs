@@ -12,7 +12,7 @@ use chapter_1::exercises::prelude::*;
 /// to 1: they are the share of each corner in the point.
 ///
 /// A ray through an edge or a corner *meets* the triangle, so that none slips between neighbours. A ray in
-/// the triangle's plane does not: there U, V and W are rounding noise, whose signs may agree by chance. So
+/// the triangle's plane does not: there E_A, E_B and E_C are rounding noise, whose signs may agree by chance. So
 /// demand besides that 0 is neither below nor above the x of all three sheared corners, nor the y of all.
 pub fn ray_triangle(corners: [DVec3; 3], ray: &Ray) -> Option<Meeting> {
     let [a, b, c] = corners.map(|corner| sheared(corner, ray));

@@ -4,7 +4,7 @@ use chapter_1::exercises::prelude::*;
 
 /// The direction R in which a mirror sends on what arrives along `incident`; a `DVec3` is three `f64`.
 ///
-/// - `incident`: unit, towards the surface (the V of the slide's formula).
+/// - `incident`: D (slide: V), unit, towards the surface.
 /// - `n`: the unit normal N; it may stand on either side.
 ///
 /// The answer is unit and leads away from the surface.

@@ -3,11 +3,11 @@
 //! ```text
 //! eq:rendering            L(x, x') = g(x, x') [ ε(x, x') + ∫_Ω ρ(x, x', x'') L(x', x'') dx'' ]
 //! eq:directional          I(x') = ε(x') + ∫_Ω ρ(x, x', x'') g(x', x'') I(x'') dx''
-//! eq:direction-sets       S = { dᵢ | L(dᵢ) ≠ 0 },   S' = S ∪ { dᵢ | dᵢ = R or dᵢ = T },   Ω' = Ω − S'
+//! eq:direction-sets       S = { ωᵢ | L(ωᵢ) ≠ 0 },   S' = S ∪ { ωᵢ | ωᵢ = R or ωᵢ = T },   Ω' = Ω − S'
 //! ```
 //!
 //! Of all directions the model keeps S', the lights, the mirror and the refracted direction, and puts
-//! the constant `eq:ambient` in place of the rest, Ω'. (The slide prints Ω' = Ω − S; with S the mirror
+//! the constant `eq:ambient` in place of the rest, Ω'. (The slide writes dᵢ for ωᵢ, and Ω' = Ω − S; with S the mirror
 //! directions would be counted twice.) What is left is one small function per term:
 //! [`attenuation`], [`local`] and [`ambient`]; the recursion over R and T is chapter 1's.
 

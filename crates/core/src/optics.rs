@@ -17,14 +17,14 @@ fn is_unit(v: DVec3) -> bool {
 /// Direction of the mirror ray.
 ///
 /// ```text
-/// eq:reflected-ray        R = V − 2 (N·V) N
+/// eq:reflected-ray        R = D − 2 (N·D) N
 /// ```
 ///
-/// | slide | here       |                                                  |
-/// |-------|------------|--------------------------------------------------|
-/// | V     | `incident` | unit, travels *towards* the surface              |
-/// | N     | `n`        | unit, either side: R does not change if N flips   |
-/// | R     | result     | unit, travels away from the surface              |
+/// | formula      | here       |                                                 |
+/// |--------------|------------|-------------------------------------------------|
+/// | D (slide: V) | `incident` | unit, travels *towards* the surface             |
+/// | N            | `n`        | unit, either side: R does not change if N flips |
+/// | R            | result     | unit, travels away from the surface             |
 ///
 /// Slide « Reflets spéculaires : calcul du rayon réfléchi ».
 #[doc(alias = "eq:reflected-ray")]
@@ -40,16 +40,16 @@ pub fn reflect(incident: DVec3, n: DVec3) -> DVec3 {
 ///
 /// ```text
 /// eq:descartes            n₁ sin θ₁ = n₂ sin θ₂
-///                         T = η V + (η cos θ₁ − cos θ₂) N,   η = n₁ / n₂
+///                         T = η D + (η cos θ₁ − cos θ₂) N,   η = n₁ / n₂
 ///                         cos² θ₂ = 1 − η² (1 − cos² θ₁)
 /// ```
 ///
-/// | slide  | here       |                                                          |
-/// |--------|------------|----------------------------------------------------------|
-/// | V      | `incident` | unit, travels *towards* the surface                      |
-/// | N      | `n`        | unit, on the side the ray comes from: N·V ≤ 0            |
-/// | n₁, n₂ | `n1`, `n2` | refractive indices before and behind the surface          |
-/// | T      | result     | unit, travels away from the surface, on the other side   |
+/// | formula      | here       |                                                        |
+/// |--------------|------------|--------------------------------------------------------|
+/// | D (slide: V) | `incident` | unit, travels *towards* the surface                    |
+/// | N            | `n`        | unit, on the side the ray comes from: N·D ≤ 0          |
+/// | n₁, n₂       | `n1`, `n2` | refractive indices before and behind the surface       |
+/// | T            | result     | unit, travels away from the surface, on the other side |
 ///
 /// Slide « Calcul du rayon réfracté : loi de Descartes ».
 #[doc(alias = "eq:descartes")]

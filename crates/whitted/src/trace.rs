@@ -45,9 +45,9 @@ pub enum AtLimit {
     Ambient,
     /// The background, as if the ray met nothing.
     Background,
-    /// Russian roulette: a ray of weight w below [`Settings::min_weight`] is traced with probability
-    /// p = w / `min_weight`, and its answer divided by p; otherwise it is black. What is divided by p
-    /// weighs w / p = `min_weight` again.
+    /// Russian roulette: a ray of weight below [`Settings::min_weight`] is traced with the probability
+    /// weight / `min_weight`, and its answer divided by that; otherwise it is black. What is so divided
+    /// weighs `min_weight` again.
     ///
     /// The mean over all seeds is the picture without a minimum weight (Arvo and Kirk, *Particle Transport
     /// and Image Synthesis*, 1990). A ray beyond [`Settings::max_depth`] is black.

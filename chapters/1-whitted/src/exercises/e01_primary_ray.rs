@@ -27,14 +27,14 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         vary: "halve the opening angle in your function (`0.5 * camera.fov`): what happens to the balls, and \
                does the horizon move?",
         hints: [
-            "Build a frame at the eye: forward, right and up, unit and at right angles. The film is a \
-             window at distance 1 ahead; how high is it if its opening angle is known?",
-            "forward F = (look_at − eye)/|…|, right = F × up/|…|, true up = right × F. The film's half \
-             height is h = tan(fov/2), so a pixel's side is p = 2h / height, and the direction is \
-             F + p (x − width/2) right − p (y − height/2) up, made unit.",
-            "`let forward = (camera.look_at - camera.eye).normalize();` \
-             `let right = forward.cross(camera.up).normalize();` `let up = right.cross(forward);` \
-             `let pixel = 2.0 * (0.5 * camera.fov.to_radians()).tan() / f64::from(size.height);` then add up \
+            "Build a frame at the eye, of three unit axes at right angles: w forward, u to the right and v up. The \
+             film is a window at distance 1 ahead; how high is it if its opening angle is known?",
+            "w = (look_at − eye)/|…|, u = w × up/|…|, v = u × w. From its middle to its edge the film measures \
+             tan(fov/2), so a pixel's side is p = 2 tan(fov/2) / height, and the direction is \
+             w + p (x − width/2) u − p (y − height/2) v, made unit.",
+            "w, u and v are `let forward = (camera.look_at - camera.eye).normalize();`, \
+             `let right = forward.cross(camera.up).normalize();` and `let up = right.cross(forward);`, p is \
+             `let pixel = 2.0 * (0.5 * camera.fov.to_radians()).tan() / f64::from(size.height);`. Then add up \
              the three parts, `.normalize()`, and `Ray::new(camera.eye, …)`.",
         ],
         solution: Solution {

@@ -34,12 +34,13 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
             "Seen along the ray the triangle is flat, and the ray is the point (0, 0). The ray passes on the \
              same side of all three edges, or it misses; each edge has a function whose sign is the side. \
              Neighbours must work out the same products for the edge that they share.",
-            "eq:ray-triangle: U = Cx By − Cy Bx, V = Ax Cy − Ay Cx, W = Bx Ay − By Ax. A miss if one is \
-             negative and one positive; 0 is on the edge, and a hit. det = U + V + W, \
-             t = (U Az + V Bz + W Cz) / det, and the weights are (U, V, W) / det. A ray in the triangle's plane \
-             has det 0, or rounding noise: demand also that 0 is in the range of the x and in that of the y of \
-             the three corners.",
-            "After u, v and w: `let miss = u.min(v).min(w) < 0.0 && u.max(v).max(w) > 0.0;` \
+            "eq:ray-triangle: E_A = Cx By − Cy Bx, E_B = Ax Cy − Ay Cx, E_C = Bx Ay − By Ax. A miss if one is \
+             negative and one positive; 0 is on the edge, and a hit. det = E_A + E_B + E_C, \
+             t = (E_A Az + E_B Bz + E_C Cz) / det, and the weights are (E_A, E_B, E_C) / det. A ray in the \
+             triangle's plane has det 0, or rounding noise: demand also that 0 is in the range of the x and in that \
+             of the y of the three corners.",
+            "With `u`, `v` and `w` for E_A, E_B and E_C: \
+             `let miss = u.min(v).min(w) < 0.0 && u.max(v).max(w) > 0.0;` \
              `let beside = |a: f64, b: f64, c: f64| a.min(b).min(c) > 0.0 || a.max(b).max(c) < 0.0;`, for the \
              x and for the y. End with an accepting comparison, which a NaN fails: \
              `(t > 0.0 && t.is_finite()).then(|| (t, DVec3::new(u, v, w) / det))`.",

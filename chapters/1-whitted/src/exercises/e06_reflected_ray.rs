@@ -21,9 +21,9 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                   the colour in its middle, and what at its rim?",
         vary: "turn N around in your function: why does the picture stay the same?",
         hints: [
-            "Split V into a part along N and a part along the surface. A mirror turns one of them around.",
-            "eq:reflected-ray: R = V − 2 (N·V) N, with V towards the surface.",
-            "`n.dot(incident)` is N·V; take twice that many `n` away from `incident`.",
+            "Split D into a part along N and a part along the surface. A mirror turns one of them around.",
+            "eq:reflected-ray: R = D − 2 (N·D) N, with D (slide: V) towards the surface.",
+            "`n.dot(incident)` is N·D; take twice that many `n` away from `incident`.",
         ],
         solution: Solution {
             answer: include_str!("../../solutions/e06_reflected_ray.rs"),

@@ -24,9 +24,9 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                   water: how much of the picture shows it, and what do the corners show?",
         vary: "multiply n₁ / n₂ by 1.1 in your function: does the diver's window grow or shrink, and why?",
         hints: [
-            "Split V into a part along N and a part along the surface, of length sin θ₁. Descartes scales the \
-             second; the first has what is left of length 1.",
-            "eq:descartes gives T = η V + (η cos θ₁ − cos θ₂) N with η = n₁ / n₂, cos θ₁ = −N·V and \
+            "Split D (slide: V) into a part along N and a part along the surface, of length sin θ₁. Descartes \
+             scales the second; the first has what is left of length 1.",
+            "eq:descartes gives T = η D + (η cos θ₁ − cos θ₂) N with η = n₁ / n₂, cos θ₁ = −N·D and \
              cos² θ₂ = 1 − η² (1 − cos² θ₁). A negative cos² is total reflection.",
             "`let cos1 = -n.dot(incident);`, then `cos2_squared`; `None` if it is below 0, else \
              `Some(eta * incident + (eta * cos1 - cos2_squared.sqrt()) * n)`.",

@@ -328,7 +328,7 @@ impl Walker<'_> {
             );
             (format!("k_t = {}", spawned.k_t.shown()), vec![law])
         } else {
-            let mut lines = vec![format!("R = V − 2 (N·V) N, θ = {theta} on both sides of N")];
+            let mut lines = vec![format!("R = D − 2 (N·D) N, θ = {theta} on both sides of N")];
             if spawned.total_reflection {
                 let limit = degrees(DVec3::X, DVec3::X * (1.0 - (n2 / n1).powi(2)).max(0.0).sqrt());
                 lines.push(format!(

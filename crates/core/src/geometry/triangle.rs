@@ -109,16 +109,17 @@ pub struct TriangleHit {
 /// The watertight intersection of a ray with a triangle, from either side.
 ///
 /// ```text
-/// eq:ray-triangle     U = Cx By − Cy Bx,  V = Ax Cy − Ay Cx,  W = Bx Ay − By Ax
-///                     t = (U Az + V Bz + W Cz) / (U + V + W)
+/// eq:ray-triangle     E_A = Cx By − Cy Bx,  E_B = Ax Cy − Ay Cx,  E_C = Bx Ay − By Ax
+///                     t = (E_A Az + E_B Bz + E_C Cz) / (E_A + E_B + E_C)
 /// ```
 ///
-/// in coordinates sheared so that the ray is the z axis. Two triangles that share an edge compute
-/// the same products for it, rounding is monotone, so an edge function never gets the wrong sign;
-/// at worst it is 0, and 0 is inside for both neighbours. Hence no ray passes between them. The
-/// products stay plain: `mul_add` would round one of the two and break the symmetry.
+/// in coordinates sheared so that the ray is the z axis (U, V and W for E_A, E_B and E_C in the paper of
+/// [`Shear`]). Two triangles that share an edge compute the same products for it, rounding is monotone, so
+/// an edge function never gets the wrong sign; at worst it is 0, and 0 is inside for both neighbours. Hence
+/// no ray passes between them. The products stay plain: `mul_add` would round one of the two and break the
+/// symmetry.
 ///
-/// A ray *in* the triangle's plane meets it nowhere. There U, V and W are rounding noise whose signs
+/// A ray *in* the triangle's plane meets it nowhere. There the edge functions are rounding noise whose signs
 /// may agree by chance, so a hit must also lie in the range of the sheared corners.
 ///
 /// Hits with `t` below their own error bound are dropped: they cannot be told from the origin. That
@@ -162,13 +163,13 @@ fn for_each_axis<T: Copy, R>(shear: &Shear<T>, f: impl Fn(&Shear<T>) -> R) -> R 
     }
 }
 
-/// U, V and W of sheared corners.
+/// The edge functions E_A, E_B and E_C of sheared corners.
 #[inline(always)]
 fn edge_functions<T: Real>([[ax, ay, _], [bx, by, _], [cx, cy, _]]: [[T; 3]; 3]) -> [T; 3] {
     [cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax]
 }
 
-/// t, given 1 / (U + V + W).
+/// t, given 1 / (E_A + E_B + E_C).
 #[inline(always)]
 fn parameter<T: Real>(
     [a, b, c]: [[T; 3]; 3],
