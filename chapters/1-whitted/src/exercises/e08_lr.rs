@@ -120,6 +120,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         "the mirror ray is made by the geometric normal: a smooth mesh mirrors in facets; take `optical_normal`":
             "a smooth mirror" catches slipped(LrSlip::FlatMirror, stage, ray, depth);
     },
+    own: |yours, reference| Subject { lr: yours.lr, ..reference },
     draw,
     explain: Some(explain),
 };

@@ -83,6 +83,11 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
             "two mirrors make a chain" catches
                 changed(ray_tree(stage, call), &|node| node.children.retain(|child| child.traced));
     },
+    own: |yours, reference| Subject {
+        ray_tree: yours.ray_tree,
+        count_rays: yours.count_rays,
+        ..reference
+    },
     draw,
     explain: Some(explain),
 };

@@ -136,6 +136,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                 slab_test(&Bounds3 { min, max }, ray, range)
             };
     },
+    own: |yours, reference| Subject { slab_test: yours.slab_test, ..reference },
     draw,
     explain: None,
 };

@@ -84,6 +84,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                 t.is_some() && (place == 0 || walk.enter(child).is_some())
             });
     },
+    own: |yours, reference| Subject { visit: yours.visit, ..reference },
     draw,
     explain: None,
 };

@@ -135,6 +135,11 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                 lanes
             };
     },
+    own: |yours, reference| Subject {
+        eight_boxes: yours.eight_boxes,
+        near_to_far: yours.near_to_far,
+        ..reference
+    },
     draw,
     explain: None,
 };
