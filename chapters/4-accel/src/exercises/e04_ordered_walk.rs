@@ -12,7 +12,6 @@ use lancer_exercise::{
 };
 use lancer_lesson::picture::painted;
 
-use super::reference::visit;
 use super::walk::Tree;
 use super::{Subject, Walk};
 
