@@ -123,19 +123,22 @@ fn check<S: Copy + Send>(
             None => line(&mut text, format_args!("\nA hint: cargo xtask exercise hint {name}")),
         },
     }
-    if report.state() != State::Unwritten
-        && let Some(Card { id, name, .. }) = first_wrong(course, subject, |other| card.calls(other))
-    {
+    let called = (report.state() != State::Unwritten)
+        .then(|| first_wrong(course, subject, |other| card.calls(other)))
+        .flatten();
+    if let Some(Card { id, name, .. }) = called {
         line(
             &mut text,
             format_args!(
                 "\nIt calls your {id}, which is not right: cargo xtask exercise check {name}"
             ),
         );
-    } else if report.state() == State::Passing
+    }
+    if report.state() == State::Passing
         && let Some(other) = spoiling(course, exercise, subject)
+        && called.is_none_or(|called| called.name != other.card.name)
     {
-        line(&mut text, format_args!("\n{}", needed(&other)));
+        line(&mut text, format_args!("\n{}", needed(course, exercise, other, subject)));
     }
     (text, report.state() == State::Passing)
 }
@@ -155,29 +158,38 @@ fn first_wrong<S: Copy + Send>(
 
 /// The other exercise whose functions make the picture of one that is right wrong: the first with which it is, when
 /// they join those of the exercise and of the ones before.
-fn spoiling<S: Copy + Send>(
-    course: &Course<S>,
+fn spoiling<'a, S: Copy + Send>(
+    course: &'a Course<S>,
     exercise: &Exercise<S>,
     subject: S,
-) -> Option<Card> {
+) -> Option<&'a Exercise<S>> {
     let reference = (exercise.draw)(&course.reference);
     let is_wrong = |subject| judge_picture(exercise, subject, &reference) != Outcome::Passed;
     if !is_wrong(subject) {
         return None;
     }
     let mut joined = (exercise.own)(subject, course.reference);
-    let spoils = |other: &&Exercise<S>| {
+    course.exercises.iter().find(|other| {
         joined = (other.own)(subject, joined);
         other.card.name != exercise.card.name && is_wrong(joined)
-    };
-    course.exercises.iter().find(spoils).map(|other| other.card)
+    })
 }
 
-/// What is said of the exercise that spoils another one's picture.
-fn needed(Card { id, name, .. }: &Card) -> String {
-    format!(
-        "Its picture needs your {id} too, which is not right: cargo xtask exercise check {name}"
-    )
+/// What is said of the exercise that spoils another one's picture. Its own checks and picture may not know of it.
+fn needed<S: Copy + Send>(
+    course: &Course<S>,
+    exercise: &Exercise<S>,
+    other: &Exercise<S>,
+    subject: S,
+) -> String {
+    let Card { id, name, .. } = other.card;
+    let (is_wrong, command) = match Report::of(other, subject, course.reference).state() {
+        State::Passing => {
+            ("passes its own checks but is wrong there", format!("show {}", exercise.card.name))
+        }
+        _ => ("is not right", format!("check {name}")),
+    };
+    format!("Its picture needs your {id} too, which {is_wrong}: cargo xtask exercise {command}")
 }
 
 fn title(card: &Card) -> String {
@@ -236,7 +248,7 @@ fn show<S: Copy + Send>(
         && Report::of(exercise, subject, course.reference).state() == State::Passing
         && let Some(other) = spoiling(course, exercise, subject)
     {
-        line(&mut text, format_args!("{}", needed(&other)));
+        line(&mut text, format_args!("{}", needed(course, exercise, other, subject)));
     }
     line(&mut text, format_args!("The plate is in {file}"));
     (text, is_right)
@@ -340,7 +352,7 @@ mod tests {
                 }],
                 slips: &[],
                 own: |yours, reference| Subject { half: yours.half, ..reference },
-                draw: |subject| columns(|x| (subject.half)((subject.square)(x))),
+                draw: |subject| columns(|x| (subject.half)((subject.square)(x + 1))),
                 explain: None,
             },
         ],
@@ -387,7 +399,7 @@ mod tests {
         }
     }
 
-    /// What another exercise does to the picture is named by `check` and by `show`, whether a check knows of it or not.
+    /// `check` and `show` name it, whether its own checks and picture know of it or not.
     #[test]
     fn a_picture_that_another_exercise_spoils_is_put_down_to_it() {
         for square in [ALMOST, WRONG] {
@@ -402,5 +414,13 @@ mod tests {
             assert!(checked.contains("It calls your E9.1, which is not right"), "{checked}");
             assert!(!checked.contains("needs"), "{checked}");
         }
+        let square: fn(u32) -> u32 = |x| if x == 64 { 0 } else { x * x };
+        let subject = Subject { square, ..RIGHT };
+        let ((checked, _), _, (shown, _)) = said("half", subject);
+        let needed = "Its picture needs your E9.1 too, which passes its own checks but is wrong there: \
+                      cargo xtask exercise show half";
+        assert!(checked.contains(needed) && shown.contains(needed), "{checked}{shown}");
+        let ((checked, is_right), ..) = said("square", subject);
+        assert!(is_right, "{checked}");
     }
 }
