@@ -63,6 +63,7 @@ const SOLVED: Subject = Subject {
     rms_error,
 };
 
+/// Judged as by `check`: the checks, and then the picture.
 #[test]
 fn a_student_who_copies_the_answers_passes_every_check() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("solutions");

@@ -21,6 +21,8 @@ pub struct Exercise<S: 'static> {
     pub checks: &'static [Check<S>],
     /// What a beginner gets wrong, written with [`slips!`](crate::slips).
     pub slips: &'static [Slip<S>],
+    /// The second subject, with the functions of this exercise taken from the first.
+    pub own: fn(S, S) -> S,
     /// A picture drawn by the subject's functions.
     pub draw: fn(&S) -> Image,
     /// What happened at one pixel of that picture, where most of it is wrong.

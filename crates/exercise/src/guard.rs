@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::{Course, Verified, passed_by_stub};
+use crate::{Course, Exercise, Verified, passed_by_stub};
 
 impl<S: Copy + Send> Course<S> {
     /// Proves the checks: the right answer passes them all, and each of at least three slips is caught by
@@ -28,7 +28,8 @@ impl<S: Copy + Send> Course<S> {
         }
     }
 
-    /// Proves that untouched stubs pass no check, and that each names its exercise and slide.
+    /// Proves that untouched stubs pass no check, and that each names its exercise and slide; and by them, that an
+    /// exercise's own functions are those which it judges.
     ///
     /// # Panics
     /// If not.
@@ -36,9 +37,23 @@ impl<S: Copy + Send> Course<S> {
         for exercise in self.exercises {
             let card = exercise.card;
             assert_eq!(passed_by_stub(exercise, stubs), [""; 0], "{}", card.name);
+            self.prove_own(exercise, stubs);
             let first = card.stub.lines().next().unwrap_or_default();
             let (id, slide) = (format!("//! {} ", card.id), format!(" Slide « {} ».", card.slide));
             assert!(first.starts_with(&id) && first.ends_with(&slide), "{first}");
+        }
+    }
+
+    /// All functions of the exercise are taken: among right ones its stubs pass no check. No other's are: right
+    /// ones among stubs make no other exercise's check pass.
+    fn prove_own(&self, exercise: &Exercise<S>, stubs: S) {
+        let name = exercise.card.name;
+        let own_stubs = (exercise.own)(stubs, self.reference);
+        assert_eq!(passed_by_stub(exercise, own_stubs), [""; 0], "{name}: `own` lacks a function");
+        let own_answers = (exercise.own)(self.reference, stubs);
+        for other in self.exercises.iter().filter(|other| other.card.name != name) {
+            let passed = passed_by_stub(other, own_answers);
+            assert_eq!(passed, [""; 0], "{name}: `own` has a function of {}", other.card.name);
         }
     }
 

@@ -1,21 +1,15 @@
 //! The program of a student's workspace: their functions against the checks.
 
 use std::fmt::Write;
-use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
+use std::panic::PanicHookInfo;
 use std::path::Path;
 use std::process::exit;
-use std::sync::{Mutex, mpsc};
-use std::thread;
-use std::time::Duration;
+use std::sync::Mutex;
 
 use lancer_core::image::write_atomically;
 
-use crate::judge::Outcome;
-use crate::show::{Comparison, compare};
-use crate::{Card, Course, Exercise, Failure, Mismatch, Report, State};
-
-/// No picture of an exercise takes more than a second with right functions.
-const DRAWING: Duration = Duration::from_secs(60);
+use crate::judge::{LIMIT, Outcome, drawn_beside, guarded, judge_picture};
+use crate::{Card, Course, Exercise, Failure, Report, State};
 
 /// What panicked, and where: the file and the line. A hook cannot hand that on in any other way. It is kept
 /// apart from the outcomes, which are compared with those of slips that panic elsewhere.
@@ -41,12 +35,12 @@ fn place_of(failure: &Failure) -> Option<Place> {
     panics.iter().find(|(known, _)| known == failure).map(|(_, place)| place.clone())
 }
 
-/// Does what the arguments say: `status NAME`, `check NAME`, `check-all NAME` or `show NAME FILE.png`.
+/// Does what the arguments say: `status NAME…`, `check NAME`, `check-all NAME` or `show NAME FILE.png`.
 ///
-/// `status` prints the name of the exercise's [`State`]. `check` stops at the first failing
-/// check, `check-all` shows every one. The exit code is 0 for a right answer, 1 for any other, 2 for
-/// arguments that are none. Ends the program, since a function that does not come back cannot be stopped
-/// otherwise.
+/// `status` prints a line `state NAME STATE` for each exercise as soon as it is judged, with the name of its
+/// [`State`]; the exit code is 0. `check` stops at the first failing check, `check-all` shows every one; there and
+/// for `show` the exit code is 0 for a right answer and 1 for any other. It is 2 for arguments that are none. Ends the
+/// program, since a function that does not come back cannot be stopped otherwise.
 pub fn run<S: Copy + Send + Sync + 'static>(course: &'static Course<S>, subject: S) -> ! {
     // What a panic says goes into the report, not before it.
     std::panic::set_hook(Box::new(remember));
@@ -54,7 +48,15 @@ pub fn run<S: Copy + Send + Sync + 'static>(course: &'static Course<S>, subject:
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let named = |name: &str| course.exercises.iter().find(|exercise| exercise.card.name == name);
     let answer = match arguments[..] {
-        ["status", name] => named(name).map(|exercise| status(course, exercise, subject)),
+        ["status", first, ref others @ ..] => {
+            let names = [first].into_iter().chain(others.iter().copied());
+            names.map(named).collect::<Option<Vec<_>>>().map(|exercises| {
+                for exercise in exercises {
+                    print!("{}", status(exercise, subject, course.reference));
+                }
+                (String::new(), true)
+            })
+        }
         ["check", name] => named(name).map(|exercise| check(course, exercise, subject, false)),
         ["check-all", name] => named(name).map(|exercise| check(course, exercise, subject, true)),
         ["show", name, file] => named(name).map(|exercise| show(course, exercise, subject, file)),
@@ -68,30 +70,10 @@ pub fn run<S: Copy + Send + Sync + 'static>(course: &'static Course<S>, subject:
     exit(i32::from(!is_right))
 }
 
-fn status<S: Copy + Send + Sync + 'static>(
-    course: &'static Course<S>,
-    exercise: &'static Exercise<S>,
-    subject: S,
-) -> (String, bool) {
-    let state = judged(course, exercise, subject).state();
-    (format!("{}\n", state.name()), state == State::Passing)
-}
-
-/// What the checks find and, once they pass, the picture: what `show` calls wrong is not right, unless the
-/// functions of another exercise are to blame.
-fn judged<S: Copy + Send + Sync + 'static>(
-    course: &'static Course<S>,
-    exercise: &'static Exercise<S>,
-    subject: S,
-) -> Report {
-    let mut report = Report::of(exercise, subject, course.reference);
-    if report.state() == State::Passing
-        && let Outcome::Failed(failure) = picture(course, exercise, subject)
-        && first_wrong(course, subject, |_| true).is_none()
-    {
-        report.outcomes.push(("its picture", Outcome::Failed(failure)));
-    }
-    report
+/// The line of an exercise's state. It begins with a line's end: the student's functions may have printed without one.
+fn status<S: Copy + Send>(exercise: &Exercise<S>, subject: S, reference: S) -> String {
+    let state = Report::of(exercise, subject, reference).state();
+    format!("\nstate {} {}\n", exercise.card.name, state.name())
 }
 
 impl State {
@@ -105,14 +87,14 @@ impl State {
     }
 }
 
-fn check<S: Copy + Send + Sync + 'static>(
-    course: &'static Course<S>,
-    exercise: &'static Exercise<S>,
+fn check<S: Copy + Send>(
+    course: &Course<S>,
+    exercise: &Exercise<S>,
     subject: S,
     all: bool,
 ) -> (String, bool) {
     let card = exercise.card;
-    let report = judged(course, exercise, subject);
+    let report = Report::of(exercise, subject, course.reference);
     let mut text = title(&card);
     for (name, outcome) in &report.outcomes {
         match outcome {
@@ -141,15 +123,22 @@ fn check<S: Copy + Send + Sync + 'static>(
             None => line(&mut text, format_args!("\nA hint: cargo xtask exercise hint {name}")),
         },
     }
-    if report.state() != State::Unwritten
-        && let Some(Card { id, name, .. }) = first_wrong(course, subject, |other| card.calls(other))
-    {
+    let called = (report.state() != State::Unwritten)
+        .then(|| first_wrong(course, subject, |other| card.calls(other)))
+        .flatten();
+    if let Some(Card { id, name, .. }) = called {
         line(
             &mut text,
             format_args!(
                 "\nIt calls your {id}, which is not right: cargo xtask exercise check {name}"
             ),
         );
+    }
+    if report.state() == State::Passing
+        && let Some(other) = spoiling(course, exercise, subject)
+        && called.is_none_or(|called| called.name != other.card.name)
+    {
+        line(&mut text, format_args!("\n{}", needed(course, exercise, other, subject)));
     }
     (text, report.state() == State::Passing)
 }
@@ -165,6 +154,42 @@ fn first_wrong<S: Copy + Send>(
         Report::of(exercise, subject, course.reference).state() != State::Passing
     };
     chosen.find(is_wrong).map(|exercise| exercise.card)
+}
+
+/// The other exercise whose functions make the picture of one that is right wrong: the first with which it is, when
+/// they join those of the exercise and of the ones before.
+fn spoiling<'a, S: Copy + Send>(
+    course: &'a Course<S>,
+    exercise: &Exercise<S>,
+    subject: S,
+) -> Option<&'a Exercise<S>> {
+    let reference = (exercise.draw)(&course.reference);
+    let is_wrong = |subject| judge_picture(exercise, subject, &reference) != Outcome::Passed;
+    if !is_wrong(subject) {
+        return None;
+    }
+    let mut joined = (exercise.own)(subject, course.reference);
+    course.exercises.iter().find(|other| {
+        joined = (other.own)(subject, joined);
+        other.card.name != exercise.card.name && is_wrong(joined)
+    })
+}
+
+/// What is said of the exercise that spoils another one's picture. Its own checks and picture may not know of it.
+fn needed<S: Copy + Send>(
+    course: &Course<S>,
+    exercise: &Exercise<S>,
+    other: &Exercise<S>,
+    subject: S,
+) -> String {
+    let Card { id, name, .. } = other.card;
+    let (is_wrong, command) = match Report::of(other, subject, course.reference).state() {
+        State::Passing => {
+            ("passes its own checks but is wrong there", format!("show {}", exercise.card.name))
+        }
+        _ => ("is not right", format!("check {name}")),
+    };
+    format!("Its picture needs your {id} too, which {is_wrong}: cargo xtask exercise {command}")
 }
 
 fn title(card: &Card) -> String {
@@ -189,71 +214,25 @@ fn describe(text: &mut String, file: &str, failure: &Failure) {
             line(text, format_args!("      your function panicked{place}: {message}"));
         }
         Failure::Endless => {
-            let endless = "your function did not come back within 10 seconds: does its loop end, or its recursion?";
-            line(text, format_args!("      {endless}"));
+            let limit = LIMIT.as_secs();
+            line(
+                text,
+                format_args!(
+                    "      your function did not come back within {limit} seconds: does its loop end, or its recursion?"
+                ),
+            );
         }
     }
 }
 
-/// What `judge` says of the student's picture and the reference's, unless drawing them panics or does not end.
-fn drawn<S: Copy + Send + Sync + 'static, T: Send + 'static>(
-    course: &'static Course<S>,
-    exercise: &'static Exercise<S>,
-    subject: S,
-    judge: impl FnOnce(&Comparison) -> T + Send + 'static,
-) -> Result<T, Failure> {
-    let (sender, receiver) = mpsc::channel();
-    thread::spawn(move || {
-        let judged = catch_unwind(AssertUnwindSafe(|| {
-            let (yours, reference) =
-                ((exercise.draw)(&subject), (exercise.draw)(&course.reference));
-            judge(&compare(exercise, &yours, &reference))
-        }));
-        // Whoever waits may have left.
-        let _ = sender.send(judged.map_err(|panic| Failure::of_panic(&*panic)));
-    });
-    receiver.recv_timeout(DRAWING).unwrap_or(Err(Failure::Endless))
-}
-
-/// Whether the student's picture is the reference's.
-fn picture<S: Copy + Send + Sync + 'static>(
-    course: &'static Course<S>,
-    exercise: &'static Exercise<S>,
-    subject: S,
-) -> Outcome {
-    let difference = drawn(course, exercise, subject, |comparison| {
-        comparison.worst.map(|_| comparison.plate.claim().to_owned())
-    });
-    match difference {
-        Ok(None) => Outcome::Passed,
-        Ok(Some(claim)) => {
-            let name = exercise.card.name;
-            let case = format!("the picture of: cargo xtask exercise show {name}");
-            Outcome::Failed(Failure::Wrong(Mismatch::new(case, claim, "the reference's picture")))
-        }
-        Err(failure) => Outcome::Failed(failure),
-    }
-}
-
-fn show<S: Copy + Send + Sync + 'static>(
-    course: &'static Course<S>,
-    exercise: &'static Exercise<S>,
+fn show<S: Copy + Send>(
+    course: &Course<S>,
+    exercise: &Exercise<S>,
     subject: S,
     file: &str,
 ) -> (String, bool) {
-    let comparison = drawn(course, exercise, subject, move |comparison| {
-        let explained = exercise.explain.zip(comparison.worst).map(|(explain, pixel)| {
-            format!(
-                "\nThe reference there:\n{}\nYours there:\n{}",
-                explain(&course.reference, pixel),
-                explain(&subject, pixel)
-            )
-        });
-        let said = comparison.plate.claim().to_owned() + &explained.unwrap_or_default();
-        (said, comparison.plate.canvas().to_png(1.0), comparison.worst.is_none())
-    });
     let mut text = title(&exercise.card);
-    let (said, png, is_right) = match comparison {
+    let (said, png, is_right) = match compared(course, exercise, subject) {
         Ok(comparison) => comparison,
         Err(failure) => {
             describe(&mut text, &exercise.card.file(), &failure);
@@ -265,20 +244,31 @@ fn show<S: Copy + Send + Sync + 'static>(
         return (text, false);
     }
     line(&mut text, format_args!("{said}"));
-    let own = Report::of(exercise, subject, course.reference).state();
     if !is_right
-        && own == State::Passing
-        && let Some(Card { id, name, .. }) = first_wrong(course, subject, |_| true)
+        && Report::of(exercise, subject, course.reference).state() == State::Passing
+        && let Some(other) = spoiling(course, exercise, subject)
     {
-        line(
-            &mut text,
-            format_args!(
-                "Its own checks pass; your {id} may be to blame, which is not right: cargo xtask exercise check {name}"
-            ),
-        );
+        line(&mut text, format_args!("{}", needed(course, exercise, other, subject)));
     }
     line(&mut text, format_args!("The plate is in {file}"));
     (text, is_right)
+}
+
+/// What there is to say about the subject's picture, the plate as a PNG file, and whether the picture is right.
+fn compared<S: Copy + Send>(
+    course: &Course<S>,
+    exercise: &Exercise<S>,
+    subject: S,
+) -> Result<(String, Vec<u8>, bool), Failure> {
+    let reference = course.reference;
+    let comparison = drawn_beside(exercise, subject, &(exercise.draw)(&reference))?;
+    let mut said = comparison.plate.claim().to_owned();
+    if let Some((explain, pixel)) = exercise.explain.zip(comparison.worst) {
+        let theirs = guarded("the pixel", LIMIT, move || explain(&subject, pixel))?;
+        let ours = explain(&reference, pixel);
+        said += &format!("\nThe reference there:\n{ours}\nYours there:\n{theirs}");
+    }
+    Ok((said, comparison.plate.canvas().to_png(1.0), comparison.worst.is_none()))
 }
 
 fn line(text: &mut String, content: std::fmt::Arguments<'_>) {
@@ -297,76 +287,140 @@ mod tests {
     struct Subject {
         square: fn(u32) -> u32,
         fourth: fn(u32) -> u32,
+        half: fn(u32) -> u32,
     }
 
-    const fn card(id: &'static str, name: &'static str, stub: &'static str) -> Card {
+    const fn card(
+        id: &'static str,
+        name: &'static str,
+        functions: &'static [&'static str],
+        stub: &'static str,
+    ) -> Card {
         let solution = Solution { answer: "", file: "", item: "", notice: "" };
-        let hints = [""; 3];
         Card {
             id,
             name,
             title: "",
             slide: "",
             stub,
-            functions: if id.len() == 4 { &["square"] } else { &["fourth"] },
+            functions,
             minutes: 1,
             predict: "",
             vary: "",
-            hints,
+            hints: [""; 3],
             solution,
         }
     }
 
-    /// A row of 64 pixels.
-    fn row(function: impl Fn(u32) -> u32) -> Image {
-        let pixels = (0..64).map(|x| [function(x) as f32; 3]).collect();
-        Image::from_pixels(ImageSize::new(64, 1), pixels)
+    /// 64 × 48 pixels, the columns of which are the numbers from 0.
+    fn columns(function: impl Fn(u32) -> u32) -> Image {
+        let pixels = (0..48 * 64).map(|pixel| [function(pixel % 64) as f32; 3]).collect();
+        Image::from_pixels(ImageSize::new(64, 48), pixels)
     }
 
+    /// The file of the second calls the first, and the picture of the third shows the first.
     static COURSE: Course<Subject> = Course {
         package: "chapter-9",
         exercises: &[
             Exercise {
-                card: card("E9.1", "square", ""),
+                card: card("E9.1", "square", &["square"], ""),
                 checks: &[Check {
                     name: "3 squared",
                     run: |subject| same(String::new, &(subject.square)(3), &9),
                 }],
                 slips: &[],
-                draw: |subject| row(subject.square),
+                own: |yours, reference| Subject { square: yours.square, ..reference },
+                draw: |subject| columns(subject.square),
                 explain: None,
             },
             Exercise {
-                card: card("E9.10", "fourth", "use crate::yours::square;\n"),
+                card: card("E9.2", "fourth", &["fourth"], "use crate::yours::square;\n"),
                 checks: &[Check {
                     name: "1 to the fourth",
                     run: |subject| same(String::new, &(subject.fourth)(1), &1),
                 }],
                 slips: &[],
-                draw: |subject| row(|x| (subject.fourth)((subject.square)(x))),
+                own: |yours, reference| Subject { fourth: yours.fourth, ..reference },
+                draw: |subject| columns(|x| (subject.fourth)((subject.square)(x) % 100)),
+                explain: None,
+            },
+            Exercise {
+                card: card("E9.3", "half", &["half"], ""),
+                checks: &[Check {
+                    name: "half of 8",
+                    run: |subject| same(String::new, &(subject.half)(8), &4),
+                }],
+                slips: &[],
+                own: |yours, reference| Subject { half: yours.half, ..reference },
+                draw: |subject| columns(|x| (subject.half)((subject.square)(x + 1))),
                 explain: None,
             },
         ],
-        reference: Subject { square: |x| x * x, fourth: |x| x * x * x * x },
+        reference: RIGHT,
     };
+    const RIGHT: Subject =
+        Subject { square: |x| x * x, fourth: |x| x * x * x * x, half: |x| x / 2 };
+
+    /// Wrong in two columns of its picture, which no check looks at.
+    const ALMOST: fn(u32) -> u32 = |x| if x == 40 || x == 41 { 0 } else { x * x };
+    const WRONG: fn(u32) -> u32 = |x| 2 * x + 1;
+
+    /// What `check`, `status` and `show` say of an exercise, and whether the first and the last say that it is right.
+    fn said(name: &str, subject: Subject) -> ((String, bool), String, (String, bool)) {
+        let exercise = COURSE.exercises.iter().find(|exercise| exercise.card.name == name).unwrap();
+        let file = format!("lancer-show-{name}-{:?}.png", std::thread::current().id());
+        let file = std::env::temp_dir().join(file);
+        let shown = show(&COURSE, exercise, subject, &file.to_string_lossy());
+        std::fs::remove_file(file).unwrap();
+        let checked = check(&COURSE, exercise, subject, false);
+        (checked, status(exercise, subject, COURSE.reference), shown)
+    }
 
     #[test]
-    fn a_picture_that_differs_is_not_right_whatever_the_checks_say() {
-        let [square, fourth] = COURSE.exercises else { unreachable!() };
-        let said = |exercise, subject| check(&COURSE, exercise, subject, false);
-        let (text, is_right) = said(square, COURSE.reference);
-        assert!(is_right && text.contains("Compare with ours: "), "{text}");
-        // Wrong in two pixels of its picture, which no check looks at.
-        let almost: fn(u32) -> u32 = |x| if x == 40 || x == 41 { 0 } else { x * x };
-        let subject = Subject { square: almost, ..COURSE.reference };
-        let (text, is_right) = said(square, subject);
-        assert!(!is_right && text.contains("✗ its picture"), "{text}");
-        assert_eq!(status(&COURSE, square, subject), ("wrong\n".to_owned(), false));
-        assert!(text.contains("2 of 64 pixels differ"), "{text}");
-        // The same where another exercise's function is to blame, which its own check catches.
-        let wrong: fn(u32) -> u32 = |x| 2 * x;
-        let (text, is_right) = said(fourth, Subject { square: wrong, ..COURSE.reference });
-        assert!(is_right, "{text}");
-        assert!(text.contains("It calls your E9.1, which is not right"), "{text}");
+    fn a_right_answer_is_right() {
+        let ((checked, is_right), state, (shown, is_shown_right)) = said("square", RIGHT);
+        assert!(is_right && checked.contains("Compare with ours: "), "{checked}");
+        assert_eq!(state, "\nstate square passing\n");
+        assert!(is_shown_right && shown.contains("Your picture is the reference's."), "{shown}");
+    }
+
+    #[test]
+    fn a_picture_that_differs_is_wrong_whatever_unrelated_exercises_are_like() {
+        let square = ALMOST;
+        let unwritten: fn(u32) -> u32 = |_| todo!();
+        for half in [RIGHT.half, WRONG, unwritten] {
+            let ((checked, is_right), state, (shown, is_shown_right)) =
+                said("square", Subject { square, half, ..RIGHT });
+            assert!(!is_right && checked.contains("✗ its picture"), "{checked}");
+            assert!(checked.contains("96 of 3072 pixels differ"), "{checked}");
+            assert_eq!(state, "\nstate square wrong\n");
+            assert!(!is_shown_right && shown.contains("96 of 3072 pixels differ"), "{shown}");
+            assert!(!shown.contains("needs"), "{shown}");
+        }
+    }
+
+    /// `check` and `show` name it, whether its own checks and picture know of it or not.
+    #[test]
+    fn a_picture_that_another_exercise_spoils_is_put_down_to_it() {
+        for square in [ALMOST, WRONG] {
+            let subject = Subject { square, ..RIGHT };
+            let ((checked, is_right), state, (shown, is_shown_right)) = said("half", subject);
+            let needed = "Its picture needs your E9.1 too, which is not right: cargo xtask exercise check square";
+            assert!(is_right && checked.contains(needed), "{checked}");
+            assert_eq!(state, "\nstate half passing\n");
+            assert!(!is_shown_right && shown.contains(needed), "{shown}");
+            let ((checked, is_right), ..) = said("fourth", subject);
+            assert!(is_right, "{checked}");
+            assert!(checked.contains("It calls your E9.1, which is not right"), "{checked}");
+            assert!(!checked.contains("needs"), "{checked}");
+        }
+        let square: fn(u32) -> u32 = |x| if x == 64 { 0 } else { x * x };
+        let subject = Subject { square, ..RIGHT };
+        let ((checked, _), _, (shown, _)) = said("half", subject);
+        let needed = "Its picture needs your E9.1 too, which passes its own checks but is wrong there: \
+                      cargo xtask exercise show half";
+        assert!(checked.contains(needed) && shown.contains(needed), "{checked}{shown}");
+        let ((checked, is_right), ..) = said("square", subject);
+        assert!(is_right, "{checked}");
     }
 }

@@ -142,6 +142,7 @@ const EXERCISE: Exercise<Subject> = Exercise {
         "the cosine is squared":
             "at a slant from behind" catches n.dot(to_eye).powi(2);
     },
+    own: |yours, _| Subject { facing: yours.facing },
     draw,
     explain: None,
 };

@@ -138,6 +138,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                 primary_ray(&Camera { look_at, ..*camera }, size, x, y)
             };
     },
+    own: |yours, reference| Subject { primary_ray: yours.primary_ray, ..reference },
     draw,
     explain: None,
 };

@@ -143,6 +143,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                     .map(|(t, w)| (t * det(corners, ray), w))
                     .filter(|(t, _)| *t > 0.0);
     },
+    own: |yours, reference| Subject { ray_triangle: yours.ray_triangle, ..reference },
     draw,
     explain: None,
 };

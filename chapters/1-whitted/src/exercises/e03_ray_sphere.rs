@@ -126,6 +126,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                 positive(around(-fd, rr - (ff - fd * fd)))
             };
     },
+    own: |yours, reference| Subject { ray_sphere: yours.ray_sphere, ..reference },
     draw,
     explain: None,
 };

@@ -100,6 +100,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
          number":
             "a slanted surface, by hand" catches moved(surface, |n, error| error * n, lamp);
     },
+    own: |yours, reference| Subject { shadow_ray: yours.shadow_ray, ..reference },
     draw,
     explain: None,
 };

@@ -99,6 +99,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
             "the eye far from the mirror direction" catches
                 with_cosines(lit, n_l(lit).abs(), r_v(lit).abs());
     },
+    own: |yours, reference| Subject { local_light: yours.local_light, ..reference },
     draw,
     explain: None,
 };

@@ -48,6 +48,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         "the sign is wrong: twice the normal part is added where it should be taken away":
             "45 degrees onto a floor" catches v + 2.0 * n.dot(v) * n;
     },
+    own: |yours, reference| Subject { reflected_ray: yours.reflected_ray, ..reference },
     draw,
     explain: None,
 };

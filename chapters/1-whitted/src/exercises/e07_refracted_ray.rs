@@ -87,6 +87,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                 (cos2 >= 0.0).then(|| sin2 * (v + cos1 * n).normalize_or_zero() - cos2 * n)
             };
     },
+    own: |yours, reference| Subject { refracted_ray: yours.refracted_ray, ..reference },
     draw,
     explain: None,
 };

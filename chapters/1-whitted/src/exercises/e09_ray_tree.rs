@@ -4,12 +4,12 @@ use glam::DVec3;
 use lancer_core::Rgb;
 use lancer_core::geometry::Ray;
 use lancer_core::image::{Image, ImageSize};
-use lancer_core::scene::Scene;
+use lancer_core::scene::{PointSource, Scene};
 use lancer_exercise::{
     Card, Check, Exercise, Mismatch, Shown, Solution, Verdict, ensure, slips, within,
 };
 use lancer_lesson::scenes::parsed;
-use lancer_whitted::{RayCounts, RayKind};
+use lancer_whitted::{RayCounts, RayEnd, RayKind, RayNode};
 
 use super::reference::ray_tree;
 use super::{
@@ -82,6 +82,11 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         "a call beyond Max_Prof has no node at all: it stays in the tree as a leaf":
             "two mirrors make a chain" catches
                 changed(ray_tree(stage, call), &|node| node.children.retain(|child| child.traced));
+    },
+    own: |yours, reference| Subject {
+        ray_tree: yours.ray_tree,
+        count_rays: yours.count_rays,
+        ..reference
     },
     draw,
     explain: Some(explain),
@@ -265,11 +270,30 @@ fn full_tree(subject: &Subject) -> Verdict {
 
 const MAX_DEPTH: u32 = 5;
 
+/// The tree below a call that the course's own LR has made. It casts no shadow ray to a lamp that would add nothing,
+/// so the lamps in front are counted here.
+fn recorded(stage: &Stage, calls: &[RayNode], index: usize) -> Node {
+    let RayNode { call, end, .. } = &calls[index];
+    let mut node = Node::untraced(call);
+    node.traced = !matches!(end, RayEnd::Cut);
+    if let RayEnd::Surface { hit, position, .. } = end {
+        let surface = stage.scene.surface_at(&call.ray, hit);
+        let n = surface.shading_normal_towards(-call.ray.direction);
+        let is_in_front = |lamp: &&PointSource| n.dot(lamp.position - position) > 0.0;
+        node.shadows = stage.lamps.iter().filter(is_in_front).count() as u32;
+    }
+    let made = (index + 1..calls.len()).filter(|&child| calls[child].parent == Some(index));
+    node.children = made.map(|child| recorded(stage, calls, child)).collect();
+    node
+}
+
 fn title(subject: &Subject) -> Verdict {
     let (scene, rays) = title_rays(MAX_DEPTH);
     for (case, ray) in rays {
         let (stage, call) = (|| Stage::new(&scene, MAX_DEPTH, reference::SUBJECT), from_eye(ray));
-        let wanted = ray_tree(&stage(), &call);
+        let stage_of_course = stage();
+        let calls = stage_of_course.recorded(&call).nodes;
+        let wanted = recorded(&stage_of_course, &calls, 0);
         within(1e-14, || case, &(subject.ray_tree)(&stage(), &call), &wanted)?;
     }
     Ok(())

@@ -121,6 +121,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                 items.partition_point(|item| item.center[axis] < middle)
             };
     },
+    own: |yours, reference| Subject { median_split: yours.median_split, ..reference },
     draw,
     explain: None,
 };

@@ -12,7 +12,6 @@ use lancer_exercise::{
 };
 use lancer_lesson::picture::painted;
 
-use super::reference::visit;
 use super::walk::Tree;
 use super::{Subject, Walk};
 
@@ -84,6 +83,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                 t.is_some() && (place == 0 || walk.enter(child).is_some())
             });
     },
+    own: |yours, reference| Subject { visit: yours.visit, ..reference },
     draw,
     explain: None,
 };
@@ -192,7 +192,28 @@ fn heap() -> (Scene, Vec<Ray>) {
     (balls(shapes), rays)
 }
 
-/// Compares what a question about a walk gets as an answer from the subject and from the reference.
+/// What the walk tests at the least, by a stack in place of the recursion: the nearest child that the ray meets is on
+/// top, of equal ones that which is stored first.
+fn by_stack(walk: &mut Walk, root: usize) {
+    let mut open = vec![(0.0, root)];
+    while let Some((enter, node)) = open.pop() {
+        if enter > walk.closest() {
+            continue;
+        }
+        let Some([first, second]) = walk.children(node) else {
+            walk.test_leaf(node);
+            continue;
+        };
+        let mut met: Vec<(f64, usize)> = [second, first]
+            .into_iter()
+            .filter_map(|child| Some((walk.enter(child)?, child)))
+            .collect();
+        met.sort_by(|a, b| b.0.total_cmp(&a.0));
+        open.extend(met);
+    }
+}
+
+/// Compares what a question about a walk gets as an answer from the subject and what is tested at the least.
 fn over_the_heap(
     subject: &Subject,
     judge: impl Fn(&Ray, (Option<Hit>, TestCounts), TestCounts) -> Verdict,
@@ -202,7 +223,7 @@ fn over_the_heap(
     // From inside two boxes both are entered at once, and either may be visited first.
     let from_outside = |ray: &&Ray| (ray.origin - 2.0).abs().max_element() > 3.0;
     rays.iter().filter(from_outside).try_for_each(|ray| {
-        let (_, fair) = Walk::new(&scene, &tree, ray).run(visit);
+        let (_, fair) = Walk::new(&scene, &tree, ray).run(by_stack);
         judge(ray, walked(subject, &scene, &tree, ray), fair)
     })
 }
@@ -255,7 +276,7 @@ fn from_the_front(subject: &Subject) -> Verdict {
     for (x, y) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))) {
         let ray = ahead(f64::from(x) + 0.5, f64::from(y) + 0.5);
         let (hit, counts) = walked(subject, &scene, &tree, &ray);
-        let (_, fair) = Walk::new(&scene, &tree, &ray).run(visit);
+        let (_, fair) = Walk::new(&scene, &tree, &ray).run(by_stack);
         let case = |what: &str| format!("60 balls, pixel {x} of row {y}; {}: {what}", ray.shown());
         let wanted = oracle.closest_hit(&ray, Interval::POSITIVE);
         same(|| case("t"), &t_of(hit), &t_of(wanted))?;

@@ -114,6 +114,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
             "in the plane" catches
                 if_both(plane_sides(split, o, d, inside), cut(inside, (split - o) / d));
     },
+    own: |yours, reference| Subject { plane_sides: yours.plane_sides, ..reference },
     draw,
     explain: None,
 };

@@ -111,6 +111,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                 all.find_map(|&primitive| test(primitive).map(|t| (t, primitive)))
             };
     },
+    own: |yours, reference| Subject { search_cells: yours.search_cells, ..reference },
     draw,
     explain: None,
 };
