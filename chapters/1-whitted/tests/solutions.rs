@@ -104,7 +104,7 @@ fn a_primary_ray_is_the_courses_to_rounding() {
     }
 }
 
-/// U, V, W and the corners are the same numbers; the course multiplies by 1 / (U + V + W), rounded once more.
+/// The edge functions and the corners are the same numbers; the course multiplies by 1 over their sum, rounded once more.
 #[test]
 fn a_triangle_is_met_where_the_course_meets_it() {
     let mut random = Uniform::new(72, 0, 0);

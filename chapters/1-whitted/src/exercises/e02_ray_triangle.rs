@@ -73,24 +73,24 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         "t is a distance: it must be in units of the direction's length, which is not always 1":
             "in space, a direction of any length" catches
                 ray_triangle(corners, ray).map(|(t, w)| (t * ray.direction.length(), w));
-        "the weights are on the wrong corners: U, which is made of b and c, is the weight of a":
+        "the weights are on the wrong corners: E_A, which is made of b and c, is the weight of a":
             "straight down, by hand" catches
                 ray_triangle(corners, ray).map(|(t, w)| (t, w.yzx()));
-        "the weights are not divided by det = U + V + W":
+        "the weights are not divided by det = E_A + E_B + E_C":
             "straight down, by hand" catches
                 ray_triangle(corners, ray).map(|(t, w)| (t, w * det(corners, ray)));
-        "only one order of rotation is met: U, V and W are demanded to be positive, and they may be all negative \
+        "only one order of rotation is met: E_A, E_B and E_C are demanded to be positive, and they may be all negative \
          as well":
             "straight down, by hand" catches
                 ray_triangle(corners, ray).filter(|_| det(corners, ray) > 0.0);
-        "only one order of rotation is met: U, V and W are demanded to be negative, and they may be all positive \
+        "only one order of rotation is met: E_A, E_B and E_C are demanded to be negative, and they may be all positive \
          as well":
             "either side, either order of rotation" catches
                 ray_triangle(corners, ray).filter(|_| det(corners, ray) < 0.0);
         "the back of the triangle is missed: it is met from either side":
             "either side, either order of rotation" catches
                 ray_triangle(corners, ray).filter(|_| normal(corners).dot(ray.direction) < 0.0);
-        "the whole plane is met: the signs of U, V and W are not looked at":
+        "the whole plane is met: the signs of E_A, E_B and E_C are not looked at":
             "beside the triangle" catches weighted(corners, ray, plane(corners, ray));
         "a hit behind the ray's origin counts: t must be positive":
             "behind the ray" catches
@@ -134,10 +134,10 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
             "no number, no hit" catches
                 ray_triangle(corners, ray)
                     .or_else(|| det(corners, ray).is_nan().then_some((f64::NAN, DVec3::NAN)));
-        "the weights are at other corners: U, the edge function of b and c, is a's, V is b's and W c's":
+        "the weights are at other corners: E_A, the edge function of b and c, is a's, E_B is b's and E_C c's":
             "straight down, by hand" catches
                 ray_triangle(corners, ray).map(|(t, w)| (t, w.zxy()));
-        "t is not divided by det = U + V + W":
+        "t is not divided by det = E_A + E_B + E_C":
             "straight down, by hand" catches
                 ray_triangle(corners, ray)
                     .map(|(t, w)| (t * det(corners, ray), w))
@@ -157,7 +157,7 @@ fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// U + V + W: twice the area of the sheared triangle, negative where its corners turn counter-clockwise.
+/// E_A + E_B + E_C: twice the area of the sheared triangle, negative where its corners turn counter-clockwise.
 fn det(corners: [DVec3; 3], ray: &Ray) -> f64 {
     let d = ray.direction;
     -normal(corners).dot(d) / d[d.abs().max_position()]
@@ -177,7 +177,7 @@ fn weighted(corners: [DVec3; 3], ray: &Ray, t: Option<f64>) -> Option<Meeting> {
     Some((t?, DVec3::new(share(b, c), share(c, a), share(a, b))))
 }
 
-/// The right answer, and where the signs of U, V and W are wrong by less than a tolerance, where the ray meets the
+/// The right answer, and where the signs of E_A, E_B and E_C are wrong by less than a tolerance, where the ray meets the
 /// plane.
 fn tolerant(corners: [DVec3; 3], ray: &Ray, tolerance: f64) -> Option<Meeting> {
     let nearly = || {
@@ -261,7 +261,7 @@ fn beside(subject: &Subject) -> Verdict {
     Ok(())
 }
 
-/// By 2⁻⁴⁰ beyond the longest edge, which is in the range of the corners' x and y: U is 2⁻³⁶, and exact in its sign.
+/// By 2⁻⁴⁰ beyond the longest edge, which is in the range of the corners' x and y: E_A is 2⁻³⁶, and exact in its sign.
 fn just_beside(subject: &Subject) -> Verdict {
     let [a, b, c] = FLAT;
     let aside = 4.0 + 0.5_f64.powi(40);
@@ -332,7 +332,7 @@ fn in_plane(subject: &Subject) -> Verdict {
         ensure(!(passes && is_met), || {
             Mismatch::new(
                 "20000 triangles and rays in their planes, which run past them",
-                "some are met: U, V and W are rounding noise, and their signs agree by chance",
+                "some are met: E_A, E_B and E_C are rounding noise, and their signs agree by chance",
                 "None for each",
             )
         })?;

@@ -41,9 +41,9 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         reflected_ray(v, n):
         "the factor 2 is missing: the vector is projected onto the surface, not mirrored":
             "45 degrees onto a floor" catches v - n.dot(v) * n;
-        "V is taken as pointing away from the surface: the answer leads into it":
+        "D is taken as pointing away from the surface: the answer leads into it":
             "45 degrees onto a floor" catches 2.0 * n.dot(v) * n - v;
-        "N·V is made positive: that is right for one side of the surface only":
+        "N·D is made positive: that is right for one side of the surface only":
             "the normal may stand on either side" catches v + 2.0 * n.dot(v).abs() * n;
         "the sign is wrong: twice the normal part is added where it should be taken away":
             "45 degrees onto a floor" catches v + 2.0 * n.dot(v) * n;
@@ -63,7 +63,7 @@ fn floor(subject: &Subject) -> Verdict {
     compare(subject, incident, DVec3::Y, DVec3::new(0.6, 0.8, 0.0))
 }
 
-/// N = (2, 3, 6)/7 and V = (−1, −5, −4)/√42: N·V = −41/(7 √42), R = V + 82/49 (2, 3, 6)/√42.
+/// N = (2, 3, 6)/7 and D = (−1, −5, −4)/√42: N·D = −41/(7 √42), R = D + 82/49 (2, 3, 6)/√42.
 fn by_hand(subject: &Subject) -> Verdict {
     slanted(subject, 1.0)
 }

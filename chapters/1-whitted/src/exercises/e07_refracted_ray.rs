@@ -59,7 +59,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
          grazing one":
             "total reflection" catches
                 Some(along(v, n, n1 / n2, |cos_squared| cos_squared.max(0.0).sqrt()));
-        "the part along N has the wrong sign: T = η V − (η cos θ₁ − cos θ₂) N":
+        "the part along N has the wrong sign: T = η D − (η cos θ₁ − cos θ₂) N":
             "from air into water, by hand" catches
                 refracted_ray(v, n, n1, n2).map(|t| 2.0 * (n1 / n2) * v - t);
         "+ cos θ₂ N in place of − cos θ₂ N: the answer leads back to the side that the ray comes from":
@@ -74,10 +74,10 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
                 let cos2_squared = 1.0 - eta * (1.0 - cos1 * cos1);
                 (cos2_squared >= 0.0).then(|| eta * v + (eta * cos1 - cos2_squared.sqrt()) * n)
             };
-        "cos θ₁ is taken as N·V, which is negative here: N stands against the ray":
+        "cos θ₁ is taken as N·D, which is negative here: N stands against the ray":
             "equal indices: straight on" catches
                 refracted_ray(v, n, n1, n2).map(|t| t + 2.0 * (n1 / n2) * n.dot(v) * n);
-        "η cos θ₁ N is missing: η V still has its part along N, and − cos θ₂ N comes on top of it":
+        "η cos θ₁ N is missing: η D still has its part along N, and − cos θ₂ N comes on top of it":
             "equal indices: straight on" catches
                 refracted_ray(v, n, n1, n2).map(|t| t + n1 / n2 * n.dot(v) * n);
         "the angles are scaled, θ₂ = η θ₁: that is right for small angles only, the law is about sines":
@@ -203,10 +203,10 @@ fn judge(v: DVec3, n: DVec3, n1: f64, n2: f64, t: Option<DVec3>) -> Verdict {
         return Err(Mismatch::new(case("whether a ray passes"), "None", "a direction"));
     };
     within(1e-10, || case("the length of T"), &t.length(), &1.0)?;
-    within(1e-10, || case("T·(N×V)"), &t.dot(n.cross(v)), &0.0)?;
+    within(1e-10, || case("T·(N×D)"), &t.dot(n.cross(v)), &0.0)?;
     same(|| case("whether N·T < 0, behind the surface"), &(n.dot(t) < 0.0), &true)?;
     let sines = |v: DVec3, index: f64| index * n.cross(v);
-    within(1e-10, || case("n₂ N×T beside n₁ N×V"), &sines(t, n2), &sines(v, n1))
+    within(1e-10, || case("n₂ N×T beside n₁ N×D"), &sines(t, n2), &sines(v, n1))
 }
 
 /// What a diver sees who looks up: a checkered ceiling above the water, and beyond the critical angle the dark
