@@ -249,6 +249,30 @@ fn large_polygons_are_cut_as_well() {
     }
 }
 
+/// The outline of a circle with waves, all of its corners nearer to each other than rounding: whether a point is
+/// inside is told by few of them.
+#[test]
+fn dense_outlines_are_cut_in_few_steps() {
+    let count = 100_000;
+    let at = |i: usize, share: f64| {
+        let angle = TAU * i as f64 / count as f64;
+        share * (1.0 + 0.1 * (40.0 * angle).cos()) * DVec2::from_angle(angle)
+    };
+    let flat: Vec<DVec2> = (0..count).map(|i| at(i, 1.0)).collect();
+    let outline = outline::Outline::new(&flat);
+    for i in (0..count).step_by(97) {
+        for (share, turns) in [(1.0 - 1e-6, 1), (1.0 + 1e-6, 0)] {
+            assert_eq!(outline.winding_number(at(i, share)), turns);
+            let steps = outline.around(at(i, share)).count();
+            assert!(steps < 2000, "{steps} at {i}");
+        }
+    }
+    let corners: Vec<DVec3> = flat.iter().map(|p| p.extend(0.0)).collect();
+    let (sum, defects) = cut(&corners);
+    assert!((sum - area(&corners)).abs() < 1e-12 * sum);
+    assert_eq!(defects, Defects::default());
+}
+
 /// Polygons that touch themselves, on whole numbers.
 const CONTACTS: [(&str, &[[i64; 2]]); 13] = [
     (
