@@ -30,6 +30,7 @@ mod check;
 mod clean;
 mod closed;
 mod definition;
+mod inside_out;
 mod mtl;
 mod obj;
 mod report;

@@ -150,7 +150,7 @@ pub enum WarningKind {
     OpenSurface {
         /// The name of its material.
         material: String,
-        /// The edges at which an odd number of triangles meet.
+        /// The edges of one triangle, or of an odd number of triangles of one material.
         edges: usize,
     },
     /// A refracting surface whose outside and inside are exchanged from one triangle to the next.
