@@ -56,15 +56,23 @@ impl<'a> EarClipper<'a> {
         for rule in rules {
             // Cutting an ear can make ears of its two neighbours, and of no other corner.
             let mut candidates: VecDeque<usize> = self.outline.corners().collect();
+            let mut deferred = None;
             while left > 3
                 && let Some(corner) = candidates.pop_front()
             {
-                if self.outline.lacks(corner) || !self.is_ear(corner, rule) {
+                if self.outline.lacks(corner) || deferred == Some(corner) {
+                    continue;
+                }
+                deferred = None;
+                if !self.is_ear(corner, rule) {
                     continue;
                 }
                 let [a, _, c] = self.cut(corner, triangles);
                 left -= 1;
                 candidates.extend([a, c]);
+                // Corner after corner would make a fan, whose ears grow as wide as the polygon. This one stands
+                // in the list once more, behind its neighbour.
+                deferred = Some(c);
             }
         }
         // One triangle is left, or a polygon that crosses itself.

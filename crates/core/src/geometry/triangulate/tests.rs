@@ -273,6 +273,28 @@ fn dense_outlines_are_cut_in_few_steps() {
     assert_eq!(defects, Defects::default());
 }
 
+/// Ears are as narrow as can be: of a circle with fine teeth, those of each sweep are twice as wide and half as many.
+/// A fan's are a circle's width each, 10⁵ in all.
+#[test]
+fn ears_stay_narrow() {
+    let count = 100_000_i32;
+    let corners: Vec<DVec3> = (0..count)
+        .map(|i| {
+            let angle = TAU * f64::from(i) / f64::from(count);
+            (1.0 - 1e-4 * f64::from(i % 2)) * dvec3(angle.cos(), angle.sin(), 0.0)
+        })
+        .collect();
+    let mut triangles = Vec::new();
+    triangulate(&corners, &mut triangles);
+    let longest_sides = triangles.iter().map(|triangle| {
+        let [a, b, c] = triangle.map(|i| corners[i as usize]);
+        a.distance(b).max(b.distance(c)).max(c.distance(a))
+    });
+    // One turn per sweep, and one of the teeth.
+    let sweeps = f64::from(count.ilog2() + 2);
+    assert!(longest_sides.sum::<f64>() < 2.0 * TAU * sweeps);
+}
+
 /// Polygons that touch themselves, on whole numbers.
 const CONTACTS: [(&str, &[[i64; 2]]); 13] = [
     (

@@ -55,7 +55,9 @@ use crate::Rgb;
 /// The most vertices, and the most triangles, of a scene: both are numbered in 32 bits.
 pub const MAX_COUNT: usize = u32::MAX as usize;
 
-/// The most corners of one face. Cutting one of this size takes seconds at worst.
+/// The most corners of one face. Cutting one of this size takes 0.01 s if it is convex, up to 5 s for waves, stars and
+/// spirals, and 20 s for a comb of 50,000 teeth, each as long as the comb is wide, on one core without optimisation for
+/// speed (`dev`).
 pub const MAX_CORNERS: usize = 100_000;
 
 /// The largest coordinate, in absolute value. Products of six of them are still finite.
