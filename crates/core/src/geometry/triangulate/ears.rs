@@ -3,6 +3,7 @@ use std::collections::VecDeque;
 use glam::DVec2;
 
 use super::cross;
+use super::outline::Outline;
 
 /// How far rounding may have moved a corner, as a part of the polygon's size: of files that are written
 /// with six digits, by less than this.
@@ -20,10 +21,7 @@ const ROUNDING: f64 = 1.0 / (1 << 15) as f64;
 /// by no more than the rounding of the corners times the outline's length.
 pub(super) struct EarClipper<'a> {
     flat: &'a [DVec2],
-    /// The corners still there, as a ring.
-    before: Vec<usize>,
-    after: Vec<usize>,
-    removed: Vec<bool>,
+    outline: Outline<'a>,
     /// All corners by x: most of them are to the left or right of an ear.
     by_x: Vec<(DVec2, usize)>,
     /// The larger side of the box around the polygon.
@@ -41,19 +39,11 @@ struct Rule {
 
 impl<'a> EarClipper<'a> {
     pub(super) fn new(flat: &'a [DVec2]) -> Self {
-        let count = flat.len();
         let mut by_x: Vec<(DVec2, usize)> = flat.iter().copied().zip(0..).collect();
         by_x.sort_by(|(p, _), (q, _)| p.x.total_cmp(&q.x));
         let (min, max) =
             flat.iter().fold((flat[0], flat[0]), |(min, max), &p| (min.min(p), max.max(p)));
-        Self {
-            flat,
-            before: (0..count).map(|i| (i + count - 1) % count).collect(),
-            after: (0..count).map(|i| (i + 1) % count).collect(),
-            removed: vec![false; count],
-            by_x,
-            size: (max - min).max_element(),
-        }
+        Self { flat, outline: Outline::new(flat), by_x, size: (max - min).max_element() }
     }
 
     pub(super) fn clip(mut self, triangles: &mut Vec<[u32; 3]>) {
@@ -65,38 +55,43 @@ impl<'a> EarClipper<'a> {
         let rules: Vec<Rule> = strict.into_iter().chain(lenient).collect();
         for rule in rules {
             // Cutting an ear can make ears of its two neighbours, and of no other corner.
-            let mut candidates: VecDeque<usize> =
-                (0..self.flat.len()).filter(|&i| !self.removed[i]).collect();
+            let mut candidates: VecDeque<usize> = self.outline.corners().collect();
+            let mut deferred = None;
             while left > 3
                 && let Some(corner) = candidates.pop_front()
             {
-                if self.removed[corner] || !self.is_ear(corner, rule) {
+                if self.outline.lacks(corner) || deferred == Some(corner) {
                     continue;
                 }
-                let [a, _, c] = self.triangle(corner);
-                self.cut(corner, triangles);
+                deferred = None;
+                if !self.is_ear(corner, rule) {
+                    continue;
+                }
+                let [a, _, c] = self.cut(corner, triangles);
                 left -= 1;
                 candidates.extend([a, c]);
+                // Corner after corner would make a fan, whose ears grow as wide as the polygon. This one stands
+                // in the list once more, behind its neighbour.
+                deferred = Some(c);
             }
         }
         // One triangle is left, or a polygon that crosses itself.
-        let mut corner = (0..self.flat.len()).find(|&i| !self.removed[i]).unwrap_or_default();
+        let corner = self.outline.corners().next().unwrap_or_default();
         for _ in 2..left {
-            let next = self.after[corner];
-            self.cut(next, triangles);
-            corner = self.before[next];
+            self.cut(self.outline.after(corner), triangles);
         }
     }
 
     fn triangle(&self, corner: usize) -> [usize; 3] {
-        [self.before[corner], corner, self.after[corner]]
+        [self.outline.before(corner), corner, self.outline.after(corner)]
     }
 
-    fn cut(&mut self, corner: usize, triangles: &mut Vec<[u32; 3]>) {
-        let [a, b, c] = self.triangle(corner);
-        triangles.push([a as u32, b as u32, c as u32]);
-        self.removed[b] = true;
-        (self.after[a], self.before[c]) = (c, a);
+    /// Cuts off a corner and returns its triangle.
+    fn cut(&mut self, corner: usize, triangles: &mut Vec<[u32; 3]>) -> [usize; 3] {
+        let triangle = self.triangle(corner);
+        triangles.push(triangle.map(|i| i as u32));
+        self.outline.remove(corner);
+        triangle
     }
 
     fn is_ear(&self, corner: usize, rule: Rule) -> bool {
@@ -114,34 +109,18 @@ impl<'a> EarClipper<'a> {
         let start = self.by_x.partition_point(|(p, _)| p.x < min.x);
         let mut is_near = false;
         for &(p, i) in self.by_x[start..].iter().take_while(|(p, _)| p.x <= max.x) {
-            if p.y < min.y || p.y > max.y || self.removed[i] || i == corner {
+            if p.y < min.y || p.y > max.y || self.outline.lacks(i) || i == corner {
                 continue;
             }
             is_near |= !triangle.contains(&i) && ear.is_near(p, margin);
             let enters = |&end: &usize| ear.is_entered(p, self.flat[end], rule.depth);
-            if (is_near && rule.near) || [self.before[i], self.after[i]].iter().any(enters) {
+            if (is_near && rule.near)
+                || [self.outline.before(i), self.outline.after(i)].iter().any(enters)
+            {
                 return false;
             }
         }
-        !is_near || self.winding_number(ear.middle(), corner) == 1
-    }
-
-    /// How often what is left of the outline, from this corner on, runs around a point, counter-clockwise.
-    fn winding_number(&self, p: DVec2, corner: usize) -> i32 {
-        let (mut turns, mut from) = (0, corner);
-        loop {
-            let to = self.after[from];
-            let (a, b) = (self.flat[from], self.flat[to]);
-            if a.y <= p.y && b.y > p.y && cross(a, b, p) > 0.0 {
-                turns += 1;
-            } else if a.y > p.y && b.y <= p.y && cross(a, b, p) < 0.0 {
-                turns -= 1;
-            }
-            if to == corner {
-                return turns;
-            }
-            from = to;
-        }
+        !is_near || self.outline.winding_number(ear.middle()) == 1
     }
 }
 

@@ -1,6 +1,7 @@
 //! Polygons, in space and as files have them, cut into triangles.
 
 mod ears;
+mod outline;
 #[cfg(test)]
 mod tests;
 

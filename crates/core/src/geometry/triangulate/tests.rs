@@ -249,6 +249,52 @@ fn large_polygons_are_cut_as_well() {
     }
 }
 
+/// The outline of a circle with waves, all of its corners nearer to each other than rounding: whether a point is
+/// inside is told by few of them.
+#[test]
+fn dense_outlines_are_cut_in_few_steps() {
+    let count = 100_000;
+    let at = |i: usize, share: f64| {
+        let angle = TAU * i as f64 / count as f64;
+        share * (1.0 + 0.1 * (40.0 * angle).cos()) * DVec2::from_angle(angle)
+    };
+    let flat: Vec<DVec2> = (0..count).map(|i| at(i, 1.0)).collect();
+    let outline = outline::Outline::new(&flat);
+    for i in (0..count).step_by(97) {
+        for (share, turns) in [(1.0 - 1e-6, 1), (1.0 + 1e-6, 0)] {
+            assert_eq!(outline.winding_number(at(i, share)), turns);
+            let steps = outline.around(at(i, share)).count();
+            assert!(steps < 2000, "{steps} at {i}");
+        }
+    }
+    let corners: Vec<DVec3> = flat.iter().map(|p| p.extend(0.0)).collect();
+    let (sum, defects) = cut(&corners);
+    assert!((sum - area(&corners)).abs() < 1e-12 * sum);
+    assert_eq!(defects, Defects::default());
+}
+
+/// Ears are as narrow as can be: of a circle with fine teeth, those of each sweep are twice as wide and half as many.
+/// A fan's are a circle's width each, 10⁵ in all.
+#[test]
+fn ears_stay_narrow() {
+    let count = 100_000_i32;
+    let corners: Vec<DVec3> = (0..count)
+        .map(|i| {
+            let angle = TAU * f64::from(i) / f64::from(count);
+            (1.0 - 1e-4 * f64::from(i % 2)) * dvec3(angle.cos(), angle.sin(), 0.0)
+        })
+        .collect();
+    let mut triangles = Vec::new();
+    triangulate(&corners, &mut triangles);
+    let longest_sides = triangles.iter().map(|triangle| {
+        let [a, b, c] = triangle.map(|i| corners[i as usize]);
+        a.distance(b).max(b.distance(c)).max(c.distance(a))
+    });
+    // One turn per sweep, and one of the teeth.
+    let sweeps = f64::from(count.ilog2() + 2);
+    assert!(longest_sides.sum::<f64>() < 2.0 * TAU * sweeps);
+}
+
 /// Polygons that touch themselves, on whole numbers.
 const CONTACTS: [(&str, &[[i64; 2]]); 13] = [
     (

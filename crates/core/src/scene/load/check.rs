@@ -54,7 +54,8 @@ pub(super) fn within_limit(
 }
 
 /// The path of a file that another one, in `folder`, names: in that folder or below it, and nowhere
-/// else, so that files from a stranger cannot make us read others. A `\` separates folders, too.
+/// else, so that files from a stranger cannot make us read others. A `\` separates folders, too. Links are
+/// followed, and refused if they lead out, when the file is opened.
 pub(super) fn beside(folder: &Path, what: &str, name: &str) -> Result<PathBuf, Problem> {
     let name = name.replace('\\', "/");
     let has_drive = name.as_bytes().get(1) == Some(&b':');

@@ -1,15 +1,15 @@
 use std::collections::HashMap;
-use std::ops::Range;
 
 use glam::DVec3;
 
+use super::inside_out::{BUDGET, inside_out};
 use crate::geometry::Sphere;
 use crate::scene::{Face, Material, MaterialId, Mesh, Scene};
 
 /// What is wrong with the refracting triangles of one material.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Flaws {
-    /// Edges at which an odd number of triangles meet.
+    /// Edges of one triangle, or of an odd number of triangles of one material.
     pub open: usize,
     /// Edges along which as many triangles meet as should, but not half of them in each direction.
     pub mixed: usize,
@@ -24,6 +24,9 @@ pub(super) struct Flaws {
 ///
 /// An edge is told by the positions of its ends: exporters split vertices along seams. A surface is closed if each of
 /// its edges is run through as often in one direction as in the other.
+///
+/// Where three spaces meet, as water, glass and air do along the rim of the water, each two of them have a surface of
+/// its own between them. An edge of three or more triangles of several materials is such a joint, and no flaw.
 pub(super) fn flaws(scene: &Scene) -> Vec<(MaterialId, Flaws)> {
     let refracts: Vec<bool> = scene.materials.iter().map(Material::refracts).collect();
     if !refracts.contains(&true) {
@@ -40,13 +43,17 @@ pub(super) fn flaws(scene: &Scene) -> Vec<(MaterialId, Flaws)> {
 
     let edges = sorted_edges(mesh, &triangles);
     let mut surfaces = Surfaces::new(triangles.len());
-    let mut flawed = Vec::new();
+    let mut not_closed = Vec::new();
     for around in edges.chunk_by(|a, b| a.ends == b.ends) {
         let first = around[0].triangle;
         around.iter().for_each(|edge| surfaces.join(first, edge.triangle));
         let forwards = around.iter().filter(|edge| edge.forwards).count();
         if 2 * forwards != around.len() {
-            flawed.push(first);
+            not_closed.push(first);
+            let is_other = |edge: &Edge| material(edge.triangle) != material(first);
+            if around.len() > 2 && around.iter().any(is_other) {
+                continue;
+            }
             let of_material = &mut flaws[material(first)];
             *if around.len() % 2 == 1 { &mut of_material.open } else { &mut of_material.mixed } +=
                 1;
@@ -55,7 +62,11 @@ pub(super) fn flaws(scene: &Scene) -> Vec<(MaterialId, Flaws)> {
     let spheres = scene.spheres.iter().filter(|sphere| is_refracting(sphere.material));
     let corners: Vec<[DVec3; 3]> = triangles.iter().map(|&index| mesh.corners(index)).collect();
     let spheres: Vec<Sphere> = spheres.map(|sphere| sphere.shape).collect();
-    for (first, size) in inside_out(&corners, &mut surfaces, &flawed, &spheres) {
+    let roots: Vec<u32> =
+        (0..corners.len() as u32).map(|triangle| surfaces.find(triangle)).collect();
+    let mut is_closed = vec![true; corners.len()];
+    not_closed.iter().for_each(|&triangle| is_closed[roots[triangle as usize] as usize] = false);
+    for (first, size) in inside_out(&corners, &roots, &is_closed, &spheres, BUDGET) {
         let of_material = &mut flaws[material(first)];
         of_material.inside_out += 1;
         // Two triangles meet at each edge.
@@ -119,107 +130,5 @@ impl Surfaces {
     fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.find(a), self.find(b));
         self.0[a.max(b) as usize] = a.min(b);
-    }
-}
-
-/// The closed surfaces that enclose a negative volume and are no hole in another one: their roots, and how many
-/// triangles they have.
-fn inside_out(
-    corners: &[[DVec3; 3]],
-    surfaces: &mut Surfaces,
-    flawed: &[u32],
-    spheres: &[Sphere],
-) -> Vec<(u32, usize)> {
-    let roots: Vec<u32> =
-        (0..corners.len() as u32).map(|triangle| surfaces.find(triangle)).collect();
-    let mut is_closed = vec![true; corners.len()];
-    flawed.iter().for_each(|&triangle| is_closed[roots[triangle as usize] as usize] = false);
-    // Six times the volume, the sum of its terms' absolute values, and their number.
-    let mut volumes = vec![(0.0, 0.0, 0); corners.len()];
-    for (&root, triangle) in roots.iter().zip(corners) {
-        let origin = corners[root as usize][0];
-        let [a, b, c] = triangle.map(|corner| corner - origin);
-        let volume = a.dot(b.cross(c));
-        let (sum, size, count) = &mut volumes[root as usize];
-        *sum += volume;
-        *size += f64::abs(volume);
-        *count += 1;
-    }
-    let is_negative = |&root: &usize| {
-        let (sum, size, _) = volumes[root];
-        // What encloses nothing, such as a sheet with two sides, sums to rounding errors.
-        is_closed[root] && sum < -1e-9 * size
-    };
-    let mut suspects: Vec<Suspect> = (0..corners.len())
-        .filter(is_negative)
-        .map(|root| Suspect::new(root as u32, &corners[root]))
-        .collect();
-    if suspects.is_empty() {
-        return Vec::new();
-    }
-    suspects.sort_unstable_by(|a, b| a.across.total_cmp(&b.across));
-    for (&root, triangle) in roots.iter().zip(corners) {
-        if is_closed[root as usize] {
-            let [a, b, c] = triangle.map(|corner| corner.dot(across()));
-            for suspect in between(&mut suspects, a.min(b).min(c)..a.max(b).max(c)) {
-                if suspect.root != root {
-                    suspect.winding += crossing(suspect.point, triangle);
-                }
-            }
-        }
-    }
-    for sphere in spheres {
-        let middle = sphere.center.dot(across());
-        for suspect in between(&mut suspects, middle - sphere.radius..middle + sphere.radius) {
-            let is_inside = suspect.point.distance(sphere.center) < sphere.radius;
-            suspect.winding += i32::from(is_inside);
-        }
-    }
-    let guilty = suspects.iter().filter(|suspect| suspect.winding <= 0);
-    guilty.map(|suspect| (suspect.root, volumes[suspect.root as usize].2)).collect()
-}
-
-/// A direction in which no author aligns edges, and one across it.
-const UP: DVec3 = DVec3::new(0.371_390_676, 0.557_086_015, 0.742_781_353);
-
-fn across() -> DVec3 {
-    UP.any_orthonormal_vector()
-}
-
-/// A closed surface of negative volume, asked how often the others wind around it.
-struct Suspect {
-    root: u32,
-    point: DVec3,
-    across: f64,
-    winding: i32,
-}
-
-impl Suspect {
-    fn new(root: u32, triangle: &[DVec3; 3]) -> Self {
-        let point = triangle.iter().sum::<DVec3>() / 3.0;
-        Self { root, point, across: point.dot(across()), winding: 0 }
-    }
-}
-
-/// Those of the sorted `suspects` in this range.
-fn between(suspects: &mut [Suspect], range: Range<f64>) -> &mut [Suspect] {
-    let start = suspects.partition_point(|suspect| suspect.across < range.start);
-    let rest = &mut suspects[start..];
-    let end = rest.partition_point(|suspect| suspect.across <= range.end);
-    &mut rest[..end]
-}
-
-/// Whether the ray from `point` along [`UP`] leaves through the triangle, 1, or enters, −1. Around a closed surface
-/// these sum to how often it winds around the point.
-fn crossing(point: DVec3, triangle: &[DVec3; 3]) -> i32 {
-    let [a, b, c] = triangle.map(|corner| corner - point);
-    let sides = [a.cross(b), b.cross(c), c.cross(a)].map(|side| side.dot(UP));
-    let is_ahead = a.dot(b.cross(c));
-    if sides.iter().all(|&side| side > 0.0) && is_ahead > 0.0 {
-        1
-    } else if sides.iter().all(|&side| side < 0.0) && is_ahead < 0.0 {
-        -1
-    } else {
-        0
     }
 }

@@ -30,6 +30,7 @@ mod check;
 mod clean;
 mod closed;
 mod definition;
+mod inside_out;
 mod mtl;
 mod obj;
 mod report;
@@ -54,7 +55,9 @@ use crate::Rgb;
 /// The most vertices, and the most triangles, of a scene: both are numbered in 32 bits.
 pub const MAX_COUNT: usize = u32::MAX as usize;
 
-/// The most corners of one face. Cutting one of this size takes seconds at worst.
+/// The most corners of one face. Cutting one of this size takes 0.01 s if it is convex, up to 5 s for waves, stars and
+/// spirals, and 20 s for a comb of 50,000 teeth, each as long as the comb is wide, on one core without optimisation for
+/// speed (`dev`).
 pub const MAX_CORNERS: usize = 100_000;
 
 /// The largest coordinate, in absolute value. Products of six of them are still finite.
@@ -123,15 +126,23 @@ pub fn parse_scene(text: &str, name: &str, folder: &Path) -> Result<Loaded, Load
     scene_toml::parse(text, name, folder, &open)
 }
 
-/// Opens a file; in tests, an entry of a table.
-type Open<'a> = &'a dyn Fn(&Path) -> io::Result<Box<dyn Read>>;
+/// Opens a file; in tests, an entry of a table. One that another file names must be in the given folder or below it.
+type Open<'a> = &'a dyn Fn(&Path, Option<&Path>) -> io::Result<Box<dyn Read>>;
 
-fn open(path: &Path) -> io::Result<Box<dyn Read>> {
+fn open(path: &Path, within: Option<&Path>) -> io::Result<Box<dyn Read>> {
     // Some systems open folders and only refuse to read them.
     if path.is_dir() {
         return Err(io::ErrorKind::IsADirectory.into());
     }
-    Ok(Box::new(File::open(path)?))
+    let Some(folder) = within else { return Ok(Box::new(File::open(path)?)) };
+    // Links count as what they lead to, that of the folder included.
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let target = path.canonicalize()?;
+    if !target.starts_with(folder.canonicalize()?) {
+        let reason = "it is a link that leads out of the folder";
+        return Err(io::Error::new(io::ErrorKind::PermissionDenied, reason));
+    }
+    Ok(Box::new(File::open(target)?))
 }
 
 fn load_with(path: &Path, open: Open<'_>) -> Result<Loaded, LoadError> {
@@ -142,7 +153,7 @@ fn load_with(path: &Path, open: Open<'_>) -> Result<Loaded, LoadError> {
         "toml" => {
             let unreadable = |reason| LoadError::Unreadable { file: file(), reason };
             let mut bytes = Vec::new();
-            open(path)
+            open(path, None)
                 .and_then(|source| source.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes))
                 .map_err(unreadable)?;
             check::within_limit(

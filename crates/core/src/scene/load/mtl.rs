@@ -44,16 +44,13 @@ impl Library {
     /// The materials of the libraries that the OBJ file `model` names at the given lines.
     ///
     /// Nothing outside the model's folder is opened: of a library elsewhere, such as one named by the path of
-    /// another machine, the file of that name beside the model is read.
-    ///
-    /// # Errors
-    /// When a library that is there cannot be read.
+    /// another machine, the file of that name beside the model is read. A link that leads out is as good as missing.
     pub fn of_model(
         model: &Path,
         names: &[(String, usize)],
         open: Open<'_>,
         warnings: &mut Warnings,
-    ) -> Result<Self, LoadError> {
+    ) -> Self {
         let mut library = Self::default();
         let file = model.display().to_string();
         let folder = model.parent().unwrap_or(Path::new(""));
@@ -71,12 +68,12 @@ impl Library {
                     warnings.add(&file, *line, finding);
                 }
                 if !paths.contains(&path) {
-                    library.read(&path.display().to_string(), text, warnings)?;
+                    library.read(&path.display().to_string(), text, warnings);
                     paths.push(path);
                 }
             }
         }
-        Ok(library)
+        library
     }
 
     /// The material that `name` means after `usemtl`, and what there is to say about it.
@@ -123,18 +120,32 @@ impl Library {
         Ok(named)
     }
 
-    /// Adds the materials of an MTL file.
-    ///
+    /// Adds the materials of an MTL file, or those before the place where it cannot be read.
+    fn read(&mut self, file: &str, text: Box<dyn Read + '_>, warnings: &mut Warnings) {
+        let first = self.entries.len();
+        if let Err(error) = self.read_statements(file, text, warnings) {
+            let (line, reason) = error.into_parts();
+            warnings.add(file, line, WarningKind::UnreadableLibrary { reason });
+        }
+        // Many exporters have written `Tr 1`, and some `d 0`, for what is opaque.
+        let added = &mut self.entries[first..];
+        let is_invisible =
+            |entry: &Entry| entry.definition.material().is_ok_and(|m| m.is_invisible());
+        if !added.is_empty() && added.iter().all(is_invisible) {
+            warnings.add(file, added[0].line, WarningKind::InvisibleLibrary);
+            added.iter_mut().for_each(|entry| entry.definition.exchange_opacity());
+        }
+    }
+
     /// # Errors
-    /// When it cannot be read as text.
-    fn read(
+    /// When the file cannot be read as text.
+    fn read_statements(
         &mut self,
         file: &str,
         text: Box<dyn Read + '_>,
         warnings: &mut Warnings,
     ) -> Result<(), LoadError> {
         let mut lines = Lines::new(file, text)?;
-        let first = self.entries.len();
         let mut current = Current::Nothing;
         while let Some((number, line)) = lines.next()? {
             let statement = line.trim();
@@ -171,14 +182,6 @@ impl Library {
                 }
             }
         }
-        // Many exporters have written `Tr 1`, and some `d 0`, for what is opaque.
-        let added = &mut self.entries[first..];
-        let is_invisible =
-            |entry: &Entry| entry.definition.material().is_ok_and(|m| m.is_invisible());
-        if !added.is_empty() && added.iter().all(is_invisible) {
-            warnings.add(file, added[0].line, WarningKind::InvisibleLibrary);
-            added.iter_mut().for_each(|entry| entry.definition.exchange_opacity());
-        }
         Ok(())
     }
 
@@ -213,7 +216,7 @@ type Found = Result<(PathBuf, Box<dyn Read>, Option<WarningKind>), WarningKind>;
 fn find_files(folder: &Path, name: &str, open: Open<'_>) -> Vec<Found> {
     let exact = |name: &str| {
         let path = beside(folder, "mtllib", name).ok()?;
-        open(&path).ok().map(|text| (path, text))
+        open(&path, Some(folder)).ok().map(|text| (path, text))
     };
     let beside_model = |name: &str| exact(name.rsplit(['/', '\\', ':']).next().unwrap_or_default());
     let anywhere = |name: &str| {

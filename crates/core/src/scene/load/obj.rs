@@ -55,7 +55,7 @@ pub(super) fn read_obj(
     }
     let (materials, run_materials) = match materials {
         Materials::Own => {
-            let library = Library::of_model(path, &record.libraries, open, warnings)?;
+            let library = Library::of_model(path, &record.libraries, open, warnings);
             resolve_materials(&file, library, &record, warnings)?
         }
         Materials::Replaced => (Vec::new(), vec![MaterialId(0); record.runs.len()]),
@@ -101,7 +101,7 @@ struct Source<'a> {
 
 impl<'a> Source<'a> {
     fn open(&self) -> Result<Box<dyn Read + 'a>, LoadError> {
-        (self.open)(self.path)
+        (self.open)(self.path, None)
             .map_err(|reason| LoadError::Unreadable { file: self.file.to_owned(), reason })
     }
 

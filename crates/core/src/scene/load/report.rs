@@ -53,6 +53,15 @@ impl LoadError {
             cure: cure.into(),
         }
     }
+
+    /// The line, where one can be named, and what is wrong there.
+    pub(super) fn into_parts(self) -> (Option<usize>, String) {
+        match self {
+            Self::Unreadable { reason, .. } => (None, reason.to_string()),
+            Self::Invalid { line, problem, .. } => (line, problem),
+            Self::IsFolder { .. } | Self::UnknownKind { .. } => (None, self.to_string()),
+        }
+    }
 }
 
 fn place(file: &str, line: Option<usize>) -> String {
@@ -80,8 +89,13 @@ pub enum WarningKind {
     Nameless(&'static str),
     /// The name after `usemtl` or `mtllib`, or that of the material, ends before a comment.
     CommentAfterName,
-    /// A material library that does not exist or cannot be opened.
+    /// A material library that does not exist or cannot be opened, or a link to one outside the model's folder.
     MissingLibrary,
+    /// A material library that is there but cannot be read, or not to its end; what stands before counts.
+    UnreadableLibrary {
+        /// Why.
+        reason: String,
+    },
     /// A material library that is not where the model says, or outside its folder; one of the same name beside
     /// the model was read.
     LibraryElsewhere,
@@ -136,7 +150,7 @@ pub enum WarningKind {
     OpenSurface {
         /// The name of its material.
         material: String,
-        /// The edges at which an odd number of triangles meet.
+        /// The edges of one triangle, or of an odd number of triangles of one material.
         edges: usize,
     },
     /// A refracting surface whose outside and inside are exchanged from one triangle to the next.
@@ -192,6 +206,11 @@ impl fmt::Display for WarningKind {
             Self::MissingLibrary => {
                 f.write_str("material library cannot be opened; its materials become light grey")
             }
+            Self::UnreadableLibrary { reason } => write!(
+                f,
+                "material library cannot be read to its end: {}; what is missing becomes light grey",
+                printable(reason)
+            ),
             Self::UnknownMaterial => {
                 f.write_str("material not defined in any library; its faces become light grey")
             }

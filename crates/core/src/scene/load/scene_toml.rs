@@ -252,9 +252,10 @@ impl Source<'_> {
         let transform = self.transform(table)?;
         let path = beside(folder, "obj", table.obj.get_ref())
             .map_err(|problem| self.error(table.obj.span(), problem))?;
+        let inside = |path: &Path, within: Option<&Path>| open(path, within.or(Some(folder)));
         let of_file = material.map_or(obj::Materials::Own, |_| obj::Materials::Replaced);
         let (mesh, materials) =
-            obj::read_obj(&path, of_file, open, warnings).map_err(|error| match error {
+            obj::read_obj(&path, of_file, &inside, warnings).map_err(|error| match error {
                 LoadError::Unreadable { reason, .. } => {
                     let problem = format!("obj `{}`: {reason}", excerpt(table.obj.get_ref()));
                     let cure = "mesh files are looked for from the scene's folder";

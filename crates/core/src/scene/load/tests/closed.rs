@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use super::super::closed::Flaws;
+use super::super::{closed, inside_out};
 use super::*;
 
 /// Triangles of a box, counter-clockwise seen from outside.
@@ -195,8 +197,14 @@ fn many_surfaces_are_checked() {
         if i.is_multiple_of(2) { cube } else { turned(&cube) }
     };
     let count = 20_000;
+    let flaws = flaws_of_glass((0..count).flat_map(drop));
+    assert_eq!((flaws.inside_out, flaws.inside_out_edges), (count / 2, 18 * count / 2));
+    assert_eq!((flaws.open, flaws.mixed), (0, 0));
+}
+
+fn flaws_of_glass(triangles: impl Iterator<Item = [DVec3; 3]>) -> Flaws {
     let mut mesh = Mesh::default();
-    for triangle in (0..count).flat_map(drop) {
+    for triangle in triangles {
         let first = mesh.positions.len() as u32;
         mesh.positions.extend(triangle);
         mesh.push_face(crate::scene::MaterialId(0), &[[first, first + 1, first + 2]]);
@@ -204,7 +212,94 @@ fn many_surfaces_are_checked() {
     let mut scene = Scene::of_mesh(mesh);
     scene.materials[0].k_t = Rgb::ONE;
     scene.materials[0].refractive_index = 1.5;
-    let [(_, flaws)] = super::super::closed::flaws(&scene)[..] else { panic!("one material") };
-    assert_eq!((flaws.inside_out, flaws.inside_out_edges), (count / 2, 18 * count / 2));
-    assert_eq!((flaws.open, flaws.mixed), (0, 0));
+    let [(_, flaws)] = closed::flaws(&scene)[..] else { panic!("one material") };
+    flaws
+}
+
+/// Parallel needles, each as long as all of them lie apart: the boxes around them all overlap. Only within the
+/// budget are they judged, and four triangles by 20,000 needles are twelve times as much.
+#[test]
+fn parallel_needles_are_judged() {
+    let count = 20_000;
+    assert!(4 * count * count > 11 * inside_out::BUDGET);
+    for along in [DVec3::new(1.0, -0.7, 0.4), DVec3::X, DVec3::new(1.0, 1.0, 1.0)] {
+        let [u, v] = <[DVec3; 2]>::from(along.normalize().any_orthonormal_pair());
+        let needle = |i: usize| {
+            let tip = 0.01 * ((i % 141) as f64 * u + (i / 141) as f64 * v);
+            let corner = [tip, tip + 10.0 * along, tip + 0.004 * u, tip + 0.004 * v];
+            let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+            let volume = (corner[1] - tip).dot((corner[2] - tip).cross(corner[3] - tip));
+            let outwards = faces.map(|face: [usize; 3]| face.map(|k| corner[k])).to_vec();
+            if volume > 0.0 { turned(&outwards) } else { outwards }
+        };
+        let flaws = flaws_of_glass((0..count).flat_map(needle));
+        let expected = Flaws { inside_out: count, inside_out_edges: 6 * count, ..Flaws::default() };
+        assert_eq!(flaws, expected, "{along}");
+    }
+}
+
+#[test]
+fn beyond_the_budget_no_surface_is_judged() {
+    let cubes = [turned(&cuboid(-1.0, 1.0)), turned(&cuboid(3.0, 4.0))].concat();
+    let roots: Vec<u32> = (0..24).map(|triangle| triangle / 12 * 12).collect();
+    let judged = |budget| inside_out::inside_out(&cubes, &roots, &[true; 24], &[], budget);
+    assert_eq!(judged(20), []);
+    let mut found = judged(1000);
+    found.sort_unstable();
+    assert_eq!(found, [(0, 12), (12, 12)]);
+}
+
+/// A glass with water in it, and each two of water, glass and air with one surface between them: where all three
+/// meet, three triangles have an edge in common.
+#[test]
+fn three_spaces_may_meet() {
+    let ring = |half: f64, z: f64| {
+        [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+            .map(|(x, y)| DVec3::new(half * x, half * y, z))
+    };
+    let square = |[a, b, c, d]: [DVec3; 4]| vec![[a, b, c], [a, c, d]];
+    // Between two rings; of a cylinder, seen from outside, if the second is above the first.
+    let band = |low: [DVec3; 4], high: [DVec3; 4]| -> Vec<[DVec3; 3]> {
+        (0..4)
+            .flat_map(|i| square([low[i], low[(i + 1) % 4], high[(i + 1) % 4], high[i]]))
+            .collect()
+    };
+    let (floor, level, rim) = (ring(1.0, 1.0), ring(1.0, 3.0), ring(1.0, 4.0));
+    let glass = [
+        turned(&square(ring(2.0, 0.0))),
+        band(ring(2.0, 0.0), ring(2.0, 4.0)),
+        band(ring(2.0, 4.0), rim),
+        band(rim, level),
+    ]
+    .concat();
+    let water = square(level);
+    let between = [turned(&square(floor)), band(floor, level)].concat();
+    let [water_in_air, water_in_glass] = [("water", "1.33"), ("between", "0.887")]
+        .map(|(name, index)| GLASS.replace("glass", name).replace("1.5", index));
+    let library = GLASS.to_owned() + &water_in_air + &water_in_glass;
+    let found = |parts: &[(&str, Vec<[DVec3; 3]>)]| found_in(&library, parts);
+    let all = [("glass", glass), ("water", water), ("between", between)];
+    let none: [String; 0] = [];
+    assert_eq!(found(&all), none);
+    // A bubble in the water.
+    let at = 2.0 * DVec3::Z;
+    let bubble = turned(&cuboid(-0.1, 0.1)).into_iter().map(|triangle| triangle.map(|p| p + at));
+    let with_bubble = [&all[..], &[("water", bubble.collect())]].concat();
+    assert_eq!(found(&with_bubble), none);
+    // Half of the water's surface, and nothing below the water: borders of one material.
+    let mut torn = all.clone();
+    torn[1].1.pop();
+    assert!(found(&torn).contains(&open("water", 1)));
+    let mut torn = all.clone();
+    torn[2].1.drain(..2);
+    assert_eq!(found(&torn), [open("between", 4)]);
+    // Three triangles of one material are no joint.
+    let fin = vec![[glass_corner(), DVec3::new(2.0, -2.0, 0.0), DVec3::new(0.0, -5.0, 0.0)]];
+    let finned = [&all[..], &[("glass", fin)]].concat();
+    assert_eq!(found(&finned), [open("glass", 3)]);
+}
+
+/// Of the glass of [`three_spaces_may_meet`].
+fn glass_corner() -> DVec3 {
+    DVec3::new(-2.0, -2.0, 0.0)
 }

@@ -152,7 +152,7 @@ fn libraries_elsewhere_are_looked_for_beside_the_model() {
     let load = |names: &str| {
         let text = format!("mtllib {names}\n{CORNERS}usemtl a\nf 1 2 3\n");
         let asked = RefCell::new(Vec::new());
-        let open = |path: &Path| -> io::Result<Box<dyn Read>> {
+        let open = |path: &Path, _: Option<&Path>| -> io::Result<Box<dyn Read>> {
             asked.borrow_mut().push(path.to_owned());
             let inside = match path.to_str() {
                 Some("models/a.obj") => text.as_str(),
@@ -199,6 +199,107 @@ fn libraries_elsewhere_are_looked_for_beside_the_model() {
         let loaded = load(path);
         assert_eq!(warnings(&loaded), [missing, undefined], "{path}");
         assert_eq!(first_material(&loaded), grey(), "{path}");
+    }
+}
+
+/// Gives its bytes, then an error, as a drive that fails does.
+struct Failing<'a>(&'a [u8]);
+
+impl Read for Failing<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        match self.0.read(buffer)? {
+            0 => Err(io::Error::other("the drive fails")),
+            count => Ok(count),
+        }
+    }
+}
+
+/// What stands before the place where a library cannot be read counts; the rest is as good as missing.
+#[test]
+fn libraries_that_cannot_be_read() {
+    let model = format!("mtllib a.mtl\n{CORNERS}usemtl a\nf 1 2 3\nusemtl b\nf 1 3 2\n");
+    let text = RED.to_owned() + "newmtl b\nKd 0.5\n";
+    let unreadable = |place: &str, reason: &str| {
+        format!(
+            "{place}: material library cannot be read to its end: {reason}; what is missing becomes light grey"
+        )
+    };
+    let undefined = "material not defined in any library; its faces become light grey";
+    let utf16 = |unit: fn(u16) -> [u8; 2]| -> Vec<u8> {
+        std::iter::once(0xFEFF).chain(text.encode_utf16()).flat_map(unit).collect()
+    };
+    for bytes in [utf16(u16::to_le_bytes), utf16(u16::to_be_bytes)] {
+        let files: [(&str, &[u8]); 2] = [("a.obj", model.as_bytes()), ("a.mtl", &bytes)];
+        let loaded = load_from(&files, "a.obj").expect("drawn");
+        let all_undefined = format!("a.obj:5: {undefined} (2 times, this is the first)");
+        let expected = [unreadable("a.mtl:1", "the text is UTF-16"), all_undefined];
+        assert_eq!(warnings(&loaded), expected);
+        assert_eq!(loaded.scene.materials, [grey()]);
+    }
+    let open = |path: &Path, _: Option<&Path>| -> io::Result<Box<dyn Read>> {
+        match path.to_str() {
+            Some("a.obj") => Ok(Box::new(Cursor::new(model.clone().into_bytes()))),
+            _ => Ok(Box::new(Failing(RED.as_bytes()))),
+        }
+    };
+    let loaded = load_with(Path::new("a.obj"), &open).expect("drawn");
+    let expected = [unreadable("a.mtl", "the drive fails"), format!("a.obj:7: {undefined}")];
+    assert_eq!(warnings(&loaded), expected);
+    assert_eq!(loaded.scene.materials, [red(), grey()]);
+    // A line without an end.
+    let long = RED.to_owned() + &"x".repeat(MAX_BYTES + (1 << 17));
+    let files: [(&str, &[u8]); 2] = [("a.obj", model.as_bytes()), ("a.mtl", long.as_bytes())];
+    let loaded = load_from(&files, "a.obj").expect("drawn");
+    assert_eq!(loaded.scene.materials, [red(), grey()]);
+    let limit = unreadable("a.mtl:3", "67108865 or more bytes in a line, the maximum is 67108864");
+    let digits = |text: &str| text.replace(|c: char| c.is_ascii_digit(), "#");
+    assert_eq!(digits(&warnings(&loaded)[0]), digits(&limit));
+}
+
+/// A link counts as what it leads to.
+#[cfg(unix)]
+#[test]
+fn links_do_not_lead_out_of_the_folder() {
+    use std::fs;
+    use std::os::unix::fs::symlink;
+
+    let outer = tempfile::tempdir().expect("a folder");
+    let [inner, lib] = ["inner", "inner/lib"].map(|name| outer.path().join(name));
+    fs::create_dir_all(&lib).expect("folders");
+    fs::write(outer.path().join("secret.mtl"), RED).expect("a file");
+    fs::write(outer.path().join("secret.obj"), format!("{CORNERS}f 1 2 3\n")).expect("a file");
+    fs::write(lib.join("own.mtl"), RED).expect("a file");
+    symlink("../secret.mtl", inner.join("out.mtl")).expect("a link");
+    symlink("../secret.obj", inner.join("out.obj")).expect("a link");
+    symlink("..", inner.join("up")).expect("a link");
+    symlink("lib/own.mtl", inner.join("in.mtl")).expect("a link");
+    symlink("inner", outer.path().join("by_link")).expect("a link");
+    for folder in ["inner", "by_link"].map(|name| outer.path().join(name)) {
+        let model = folder.join("a.obj");
+        let load = |library: &str| {
+            let text = format!("mtllib {library}\n{CORNERS}usemtl a\nf 1 2 3\n");
+            fs::write(&model, text).expect("a file");
+            load(&model).expect(library)
+        };
+        for library in ["out.mtl", "up/secret.mtl"] {
+            let loaded = load(library);
+            assert_eq!(loaded.warnings[0].kind, WarningKind::MissingLibrary, "{library}");
+            assert_eq!(first_material(&loaded), grey(), "{library}");
+        }
+        for library in ["in.mtl", "lib/own.mtl", "up/inner/lib/own.mtl"] {
+            let loaded = load(library);
+            assert_eq!((warnings(&loaded), first_material(&loaded)), (vec![], red()), "{library}");
+        }
+        // The meshes of a scene file, too.
+        let scene = folder.join("s.toml");
+        let load = |mesh: &str| {
+            fs::write(&scene, format!("ambient = 1\n[[mesh]]\nobj = '{mesh}'\n")).expect("a file");
+            super::load(&scene)
+        };
+        load("a.obj").expect("fine");
+        let expected = "obj `out.obj`: it is a link that leads out of the folder; \
+                        mesh files are looked for from the scene's folder";
+        assert_refused(load("out.obj"), &format!("{}:3: {expected}", scene.display()));
     }
 }
 

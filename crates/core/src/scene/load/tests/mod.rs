@@ -15,7 +15,7 @@ use super::*;
 
 /// Loads `name` from the files given by name and content.
 fn load_from(files: &[(&str, &[u8])], name: &str) -> Result<Loaded, LoadError> {
-    let open = |path: &Path| -> io::Result<Box<dyn Read>> {
+    let open = |path: &Path, _: Option<&Path>| -> io::Result<Box<dyn Read>> {
         let found = files.iter().find(|(name, _)| Path::new(name) == path);
         let (_, bytes) = found.ok_or(io::ErrorKind::NotFound)?;
         Ok(Box::new(Cursor::new(bytes.to_vec())))
