@@ -1,8 +1,8 @@
 //! What a chapter's own tests prove of its exercises.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use crate::{Course, Exercise, Verified, passed_by_stub};
+use crate::{Course, Exercise, Report, State, Verified, passed_by_stub};
 
 impl<S: Copy + Send> Course<S> {
     /// Proves the checks: the right answer passes them all, and each of at least three slips is caught by
@@ -57,16 +57,25 @@ impl<S: Copy + Send> Course<S> {
         }
     }
 
-    /// Proves that the course's own answers stand where the cards say, below the root of the repository.
+    /// Proves that what is printed as an answer is the file that was compiled into `solved`, that it is right as
+    /// `check` judges, the picture included, and that the course's own code stands where the cards say. `chapter` is
+    /// the chapter's folder.
     ///
     /// # Panics
     /// If not.
-    pub fn prove_solutions(&self, root: &Path) {
+    pub fn prove_solutions(&self, chapter: &Path, solved: S) {
+        let read = |path: PathBuf| {
+            let text = std::fs::read_to_string(&path);
+            text.unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+        };
         for exercise in self.exercises {
             let (name, solution) = (exercise.card.name, exercise.card.solution);
-            let text = std::fs::read_to_string(root.join(solution.file));
-            let text = text.unwrap_or_else(|error| panic!("{name}: {}: {error}", solution.file));
-            let is_there = text.lines().any(|line| line.trim_start().starts_with(solution.item));
+            let answer = read(chapter.join("solutions").join(exercise.card.file()));
+            assert_eq!(solution.answer, answer, "{name}");
+            let report = Report::of(exercise, solved, self.reference);
+            assert_eq!(report.state(), State::Passing, "{name}: {:?}", report.first_failure());
+            let course = read(chapter.join("../..").join(solution.file));
+            let is_there = course.lines().any(|line| line.trim_start().starts_with(solution.item));
             assert!(is_there, "{name}: no `{}` in {}", solution.item, solution.file);
         }
     }
