@@ -102,6 +102,17 @@ pub trait Intersector: Sync {
     /// Whether the ray meets anything in `range`.
     fn occluded(&self, ray: &Ray, range: Interval) -> bool;
 
+    /// Whether many rays meet anything in `range`: the answers of [`Intersector::occluded`], each in its ray's place.
+    ///
+    /// # Panics
+    /// If the slices are not of one length.
+    fn occluded_all(&self, rays: &[Ray], range: Interval, occluded: &mut [bool]) {
+        assert_eq!(rays.len(), occluded.len(), "one answer for each ray");
+        for (ray, occluded) in rays.iter().zip(occluded) {
+            *occluded = self.occluded(ray, range);
+        }
+    }
+
     /// Answers as [`Intersector::closest_hit`] or, if any hit will do, as [`Intersector::occluded`] with the
     /// hit met first, and tells the observer its work.
     fn watch(&self, query: Query<&Ray>, observer: &mut dyn Observer) -> Option<Hit>;
