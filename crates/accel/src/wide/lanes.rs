@@ -228,7 +228,7 @@ pub(super) mod avx2 {
     //! references or slices whose lengths are checked.
 
     use std::arch::x86_64::*;
-    use std::ops::{Add, Mul, Sub};
+    use std::ops::{Add, BitAnd, Div, Mul, Neg, Not, Sub};
 
     use lancer_core::geometry::Real;
 
@@ -282,6 +282,10 @@ pub(super) mod avx2 {
     #[derive(Clone, Copy)]
     pub(in crate::wide) struct Four(__m256d);
 
+    /// Which of four.
+    #[derive(Clone, Copy)]
+    pub(in crate::wide) struct FourBits(__m256d);
+
     impl Add for Four {
         type Output = Self;
         #[inline(always)]
@@ -306,10 +310,95 @@ pub(super) mod avx2 {
         }
     }
 
-    impl Real for Four {
+    impl Div for Four {
+        type Output = Self;
         #[inline(always)]
-        fn recip(self) -> Self {
-            Self(unsafe { _mm256_div_pd(_mm256_set1_pd(1.0), self.0) })
+        fn div(self, b: Self) -> Self {
+            Self(unsafe { _mm256_div_pd(self.0, b.0) })
+        }
+    }
+
+    impl Neg for Four {
+        type Output = Self;
+        #[inline(always)]
+        fn neg(self) -> Self {
+            Self(unsafe { _mm256_xor_pd(self.0, _mm256_set1_pd(-0.0)) })
+        }
+    }
+
+    impl BitAnd for FourBits {
+        type Output = Self;
+        #[inline(always)]
+        fn bitand(self, b: Self) -> Self {
+            Self(unsafe { _mm256_and_pd(self.0, b.0) })
+        }
+    }
+
+    impl Not for FourBits {
+        type Output = Self;
+        #[inline(always)]
+        fn not(self) -> Self {
+            unsafe {
+                let all = _mm256_castsi256_pd(_mm256_set1_epi64x(-1));
+                Self(_mm256_xor_pd(self.0, all))
+            }
+        }
+    }
+
+    impl Real for Four {
+        type Mask = FourBits;
+
+        #[inline(always)]
+        fn all(self, x: f64) -> Self {
+            Self(unsafe { _mm256_set1_pd(x) })
+        }
+
+        #[inline(always)]
+        fn sqrt(self) -> Self {
+            Self(unsafe { _mm256_sqrt_pd(self.0) })
+        }
+
+        #[inline(always)]
+        fn abs(self) -> Self {
+            Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
+        }
+
+        #[inline(always)]
+        fn copysign(self, sign: Self) -> Self {
+            unsafe {
+                let sign = _mm256_and_pd(_mm256_set1_pd(-0.0), sign.0);
+                Self(_mm256_or_pd(self.abs().0, sign))
+            }
+        }
+
+        #[inline(always)]
+        fn below(self, y: Self) -> FourBits {
+            FourBits(unsafe { _mm256_cmp_pd::<_CMP_LT_OQ>(self.0, y.0) })
+        }
+
+        #[inline(always)]
+        fn at_most(self, y: Self) -> FourBits {
+            FourBits(unsafe { _mm256_cmp_pd::<_CMP_LE_OQ>(self.0, y.0) })
+        }
+
+        #[inline(always)]
+        fn select(mask: FourBits, x: Self, y: Self) -> Self {
+            Self(unsafe { _mm256_blendv_pd(y.0, x.0, mask.0) })
+        }
+
+        #[inline(always)]
+        fn bits(mask: FourBits) -> u32 {
+            unsafe { _mm256_movemask_pd(mask.0) as u32 }
+        }
+
+        #[inline(always)]
+        fn smaller(self, y: Self) -> Self {
+            Self(unsafe { _mm256_min_pd(self.0, y.0) })
+        }
+
+        #[inline(always)]
+        fn larger(self, y: Self) -> Self {
+            Self(unsafe { _mm256_max_pd(self.0, y.0) })
         }
     }
 

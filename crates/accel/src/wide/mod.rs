@@ -1,6 +1,7 @@
 //! « Accélération matérielle », on the processor: eight boxes, then eight triangles at a time.
 
 mod collapse;
+mod few;
 mod lanes;
 mod packet;
 mod walk;
@@ -16,9 +17,10 @@ use crate::binary_tree::{BinaryTree, Coverage};
 use crate::four_boxes::{Frame, FrameBox};
 use crate::front::Front;
 use collapse::WIDTH;
-use lanes::Scalar;
+use few::{FEW, Few};
 #[cfg(target_arch = "x86_64")]
 use lanes::avx2::Avx2;
+use lanes::{Lanes, Scalar};
 
 /// A hierarchy of eight children per node: culled eight at a time in `f32`, answered in `f64`.
 ///
@@ -70,6 +72,8 @@ pub struct Wide<'s> {
     nodes: Vec<Node>,
     /// Words of leaves.
     leaves: Vec<f32>,
+    /// The primitives, if they are so few that there is no tree.
+    few: Option<Few>,
     kernel: Kernel,
 }
 
@@ -194,19 +198,34 @@ impl<'s> Wide<'s> {
     }
 
     fn with_kernel(primitives: Subset<'s>, kernel: Kernel) -> Self {
+        if primitives.len() > FEW {
+            return Self::tree(primitives, kernel);
+        }
+        let none = Self::tree(primitives.scene().subset([]), kernel);
+        Self { few: Some(Few::new(&primitives)), ..none }
+    }
+
+    /// A tree, of however few.
+    fn tree(primitives: Subset<'s>, kernel: Kernel) -> Self {
         let tree = BinaryTree::of_single_primitives(&primitives);
         let collapse::Collapsed { nodes, leaves } = collapse::collapse(&tree);
-        Self { scene: tree.scene, frame: tree.frame, nodes, leaves, kernel }
+        Self { scene: tree.scene, frame: tree.frame, nodes, leaves, few: None, kernel }
     }
 
     /// Bytes held by the index, without the scene it borrows.
     pub fn memory(&self) -> usize {
-        size_of_val(self.nodes.as_slice()) + size_of_val(self.leaves.as_slice())
+        let few = self.few.as_ref().map_or(0, Few::memory);
+        size_of_val(self.nodes.as_slice()) + size_of_val(self.leaves.as_slice()) + few
     }
 
     /// Checks that every box contains what is below it and that every one of these primitives is in one leaf.
     pub fn validate<'p>(&self, primitives: impl Into<Subset<'p>>) -> Result<(), String> {
-        let mut coverage = Coverage::new(primitives.into(), self.nodes.len());
+        let primitives = primitives.into();
+        if let Some(few) = &self.few {
+            let are_all = few.primitives().eq(primitives.iter());
+            return if are_all { Ok(()) } else { Err("it has not the primitives".into()) };
+        }
+        let mut coverage = Coverage::new(primitives, self.nodes.len());
         let mut pending = if self.nodes.is_empty() { Vec::new() } else { vec![(0, 0)] };
         while let Some((index, depth)) = pending.pop() {
             coverage.node()?;
@@ -314,11 +333,9 @@ impl<'s> Wide<'s> {
                 range,
                 observer,
                 #[inline(always)]
-                |lanes, wide, ray, range, observer| {
-                    walk::closest(lanes, wide, ray, range, observer)
-                },
+                |lanes, wide, ray, range, observer| wide.closest_by(lanes, ray, range, observer),
             ),
-            Kernel::Scalar(lanes) => walk::closest(lanes, self, ray, range, observer),
+            Kernel::Scalar(lanes) => self.closest_by(lanes, ray, range, observer),
         }
     }
 
@@ -337,9 +354,68 @@ impl<'s> Wide<'s> {
                 range,
                 observer,
                 #[inline(always)]
-                |lanes, wide, ray, range, observer| walk::any(lanes, wide, ray, range, observer),
+                |lanes, wide, ray, range, observer| wide.any_by(lanes, ray, range, observer),
             ),
-            Kernel::Scalar(lanes) => walk::any(lanes, self, ray, range, observer),
+            Kernel::Scalar(lanes) => self.any_by(lanes, ray, range, observer),
+        }
+    }
+
+    #[inline(always)]
+    fn closest_by<L: Lanes, O: Observer>(
+        &self,
+        lanes: L,
+        ray: &Ray,
+        range: Interval,
+        observer: &mut O,
+    ) -> Option<Hit> {
+        match &self.few {
+            Some(few) => few.closest(lanes, ray, range, observer),
+            None => walk::closest(lanes, self, ray, range, observer),
+        }
+    }
+
+    #[inline(always)]
+    fn any_by<L: Lanes, O: Observer>(
+        &self,
+        lanes: L,
+        ray: &Ray,
+        range: Interval,
+        observer: &mut O,
+    ) -> Option<PrimitiveId> {
+        match &self.few {
+            Some(few) => few.any(lanes, ray, range, observer),
+            None => walk::any(lanes, self, ray, range, observer),
+        }
+    }
+
+    #[inline(always)]
+    fn closest_hits_by<L: Lanes>(
+        &self,
+        lanes: L,
+        rays: &[Ray],
+        range: Interval,
+        hits: &mut [Option<Hit>],
+    ) {
+        match &self.few {
+            Some(few) => {
+                for (ray, hit) in rays.iter().zip(hits) {
+                    *hit = few.closest(lanes, ray, range, &mut ());
+                }
+            }
+            None => packet::closest(lanes, self, rays, range, hits),
+        }
+    }
+
+    #[inline(always)]
+    fn occluded_all_by<L: Lanes>(
+        &self,
+        lanes: L,
+        rays: &[Ray],
+        range: Interval,
+        occluded: &mut [bool],
+    ) {
+        for (ray, occluded) in rays.iter().zip(occluded) {
+            *occluded = self.any_by(lanes, ray, range, &mut ()).is_some();
         }
     }
 }
@@ -359,14 +435,32 @@ impl Intersector for Wide<'_> {
                 range,
                 hits,
                 #[inline(always)]
-                |lanes, wide, rays, range, hits| packet::closest(lanes, wide, rays, range, hits),
+                |lanes, wide, rays, range, hits| wide.closest_hits_by(lanes, rays, range, hits),
             ),
-            Kernel::Scalar(lanes) => packet::closest(lanes, self, rays, range, hits),
+            Kernel::Scalar(lanes) => self.closest_hits_by(lanes, rays, range, hits),
         }
     }
 
     fn occluded(&self, ray: &Ray, range: Interval) -> bool {
         self.any(ray, range, &mut ()).is_some()
+    }
+
+    fn occluded_all(&self, rays: &[Ray], range: Interval, occluded: &mut [bool]) {
+        assert_eq!(rays.len(), occluded.len(), "one answer for each ray");
+        match self.kernel {
+            #[cfg(target_arch = "x86_64")]
+            Kernel::Avx2(avx2) => avx2.call(
+                self,
+                rays,
+                range,
+                occluded,
+                #[inline(always)]
+                |lanes, wide, rays, range, occluded| {
+                    wide.occluded_all_by(lanes, rays, range, occluded)
+                },
+            ),
+            Kernel::Scalar(lanes) => self.occluded_all_by(lanes, rays, range, occluded),
+        }
     }
 
     fn watch(&self, query: Query<&Ray>, mut observer: &mut dyn Observer) -> Option<Hit> {
@@ -398,7 +492,11 @@ impl BeamTraversal for Wide<'_> {
         visit: impl FnMut(PrimitiveId) -> f64,
     ) {
         let root = (!self.nodes.is_empty()).then_some(Child::node(0));
-        Front::new(self.scene, volume, far, observer).search(root, visit, |front, child, found| {
+        let mut front = Front::new(self.scene, volume, far, observer);
+        for primitive in self.few.iter().flat_map(Few::primitives) {
+            front.primitive(primitive, f64::NEG_INFINITY);
+        }
+        front.search(root, visit, |front, child, found| {
             if child.is_leaf() {
                 for primitive in self.primitives(child) {
                     front.primitive(primitive, found);

@@ -113,7 +113,7 @@ fn the_bounds_hold() {
         let answer = probe.test(PrimitiveId(0)).then(|| probe.best().unwrap().t);
         met += u32::from(answer.is_some());
         for kernel in kernels() {
-            let wide = Wide::with_kernel((&scene).into(), kernel);
+            let wide = Wide::tree((&scene).into(), kernel);
             let filtered = match kernel {
                 #[cfg(target_arch = "x86_64")]
                 Kernel::Avx2(lanes) => filter_first(lanes, &wide, &ray),
@@ -162,7 +162,7 @@ fn filter_first<L: Lanes>(lanes: L, wide: &Wide, ray: &Ray) -> Option<(FourSlabs
 fn a_ray_in_the_open_asks_little() {
     let scene = Scene::of_mesh(icosphere(4));
     for kernel in kernels() {
-        let wide = Wide::with_kernel((&scene).into(), kernel);
+        let wide = Wide::tree((&scene).into(), kernel);
         let mut counts = TestCounts::default();
         let ray = Ray::new(DVec3::new(0.1, 0.2, 3.0), DVec3::NEG_Z);
         assert!(wide.watch(Query::closest(&ray, Interval::POSITIVE), &mut counts).is_some());
@@ -222,7 +222,7 @@ fn a_packet_answers_as_brute_force() {
                 let wanted: Vec<_> =
                     rays.iter().map(|ray| oracle.closest_hit(ray, range)).collect();
                 for kernel in kernels() {
-                    let wide = Wide::with_kernel((&scene).into(), kernel);
+                    let wide = Wide::tree((&scene).into(), kernel);
                     let mut got = vec![None; rays.len()];
                     wide.closest_hits(&rays, range, &mut got);
                     assert_eq!(difference(&got, &wanted), None, "{k} {kernel:?} {range:?}");

@@ -7,6 +7,7 @@
 mod bounds;
 mod leave;
 mod ray;
+mod real;
 mod sphere;
 mod triangle;
 mod triangulate;
@@ -15,8 +16,11 @@ mod volume;
 pub use bounds::{Bounds3, Slabs};
 pub use leave::leave_surface;
 pub use ray::{Interval, Ray};
-pub use sphere::Sphere;
-pub use triangle::{Axis, Real, Shear, TriangleHit, intersect_triangle, solve_triangle};
+pub use real::Real;
+pub use sphere::{Sphere, intersect_spheres};
+pub use triangle::{
+    Axis, Shear, TriangleHit, intersect_triangle, intersect_triangles, solve_triangle,
+};
 #[cfg(test)]
 pub(crate) use triangulate::newell_normal;
 pub(crate) use triangulate::triangulate;

@@ -1,6 +1,7 @@
 use glam::DVec3;
 
-use super::{Interval, Ray, gamma};
+use super::real::{cross, dot};
+use super::{Interval, Ray, Real, gamma};
 
 /// A sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,25 +31,44 @@ impl Sphere {
     #[inline]
     pub fn intersect(&self, ray: &Ray, range: Interval) -> Option<f64> {
         let (f, d) = (ray.origin - self.center, ray.direction);
-        let (fd, ff, rr) = (f.dot(d), f.length_squared(), self.radius * self.radius);
-        let (product, error) = (ff - rr, gamma(8) * (ff + rr));
-        if fd >= 0.0 && product >= -error {
-            // Outside or on the sphere and not approaching it: no root is positive.
-            return None;
-        }
-        let dd = d.length_squared();
-        let discriminant = dd * rr - f.cross(d).length_squared();
-        // `>=` accepts: a NaN anywhere above ends here as a miss.
-        if !(discriminant >= 0.0 && self.radius > 0.0) {
-            return None;
-        }
-        let q = -fd - discriminant.sqrt().copysign(fd);
-        // t = product / q, unless its sign is rounding noise.
-        let by_product = if product.abs() > error { product / q } else { 0.0 };
-        let by_sum = q / dd;
-        let (near, far) =
-            if by_product < by_sum { (by_product, by_sum) } else { (by_sum, by_product) };
-        let inside = |t: f64| t > range.min && t < range.max && t < f64::INFINITY;
-        [near, far].into_iter().find(|&t| t > 0.0 && inside(t))
+        let (t, met) =
+            intersect_spheres(f.to_array(), self.radius, d.to_array(), [range.min, range.max])?;
+        met.then_some(t)
     }
+}
+
+/// [`Sphere::intersect`] for several spheres, or several rays, side by side: the parameters, and where they are hits;
+/// `None` where there is none at all.
+///
+/// `f` is F, from the centres to the origins, `d` are the rays' directions, and a hit lies between `min` and `max`.
+#[inline(always)]
+pub fn intersect_spheres<T: Real>(
+    f: [T; 3],
+    radius: T,
+    d: [T; 3],
+    [min, max]: [T; 2],
+) -> Option<(T, T::Mask)> {
+    let zero = radius.all(0.0);
+    let (fd, ff, rr) = (dot(f, d), dot(f, f), radius * radius);
+    let (product, error) = (ff - rr, radius.all(gamma(8)) * (ff + rr));
+    // Outside or on the sphere and not approaching it no root is positive.
+    let approaching = !(zero.at_most(fd) & (-error).at_most(product));
+    let dd = dot(d, d);
+    let moment = cross(f, d);
+    let discriminant = dd * rr - dot(moment, moment);
+    // An accepting comparison: a NaN anywhere above ends here as a miss.
+    let meets = approaching & zero.at_most(discriminant) & zero.below(radius);
+    if T::bits(meets) == 0 {
+        return None;
+    }
+    let q = -fd - discriminant.sqrt().copysign(fd);
+    // t = product / q, unless its sign is rounding noise.
+    let by_product = T::select(error.below(product.abs()), product / q, zero);
+    let by_sum = q / dd;
+    let in_order = by_product.below(by_sum);
+    let near = T::select(in_order, by_product, by_sum);
+    let far = T::select(in_order, by_sum, by_product);
+    let (min, max) = (min.larger(zero), max.smaller(zero.all(f64::INFINITY)));
+    let t = T::select(min.below(near) & near.below(max), near, far);
+    Some((t, meets & min.below(t) & t.below(max)))
 }

@@ -1,28 +1,6 @@
-use std::ops::{Add, Mul, Sub};
+use glam::DVec3;
 
-use glam::{DVec3, DVec4};
-
-use super::{Ray, gamma};
-
-/// What the intersection computes with: an `f64`, or several side by side, each rounded like one alone.
-pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
-    /// 1 / x
-    fn recip(self) -> Self;
-}
-
-impl Real for f64 {
-    #[inline(always)]
-    fn recip(self) -> Self {
-        1.0 / self
-    }
-}
-
-impl Real for DVec4 {
-    #[inline(always)]
-    fn recip(self) -> Self {
-        Self::recip(self)
-    }
-}
+use super::{Ray, Real, gamma};
 
 /// The shear that turns a ray, or several side by side, into the z axis; computed once, used for every
 /// triangle.
@@ -129,6 +107,17 @@ pub struct TriangleHit {
 #[inline(always)] // Returned through memory its result costs as much again as the test.
 pub fn intersect_triangle(corners: [DVec3; 3], ray: &Ray, shear: &Shear) -> Option<TriangleHit> {
     let corners = corners.map(|corner| (corner - ray.origin).to_array());
+    let (t, weights, met) = intersect_triangles(corners, shear)?;
+    met.then(|| TriangleHit { t, barycentric: weights.into() })
+}
+
+/// [`intersect_triangle`] for several triangles, or several rays, side by side: the parameters, the weights, and where
+/// they are those of hits; `None` where there is none at all. `corners` are relative to the rays' origins.
+#[inline(always)]
+pub fn intersect_triangles<T: Real>(
+    corners: [[T; 3]; 3],
+    shear: &Shear<T>,
+) -> Option<(T, [T; 3], T::Mask)> {
     for_each_axis(
         shear,
         #[inline(always)]
@@ -182,57 +171,59 @@ fn parameter<T: Real>(
 
 /// The test for one renaming of the axes; the axis is a constant at each call.
 #[inline(always)]
-fn sheared(corners: [[f64; 3]; 3], shear: &Shear) -> Option<TriangleHit> {
-    let corners = corners.map(|corner| shear.flatten(corner));
+fn sheared<T: Real>(corners: [[T; 3]; 3], shear: &Shear<T>) -> Option<(T, [T; 3], T::Mask)> {
+    let [a, b, c] = corners;
+    let corners = [shear.flatten(a), shear.flatten(b), shear.flatten(c)];
     let [u, v, w] = edge_functions(corners);
-    if min(u, v, w) < 0.0 && max(u, v, w) > 0.0 {
+    let zero = u.all(0.0);
+    let inside = !(min(u, v, w).below(zero) & zero.below(max(u, v, w)));
+    if T::bits(inside) == 0 {
         return None;
     }
     let [[ax, ay, az], [bx, by, bz], [cx, cy, cz]] = corners;
     let det = u + v + w;
-    if det == 0.0 || beside(ax, bx, cx) || beside(ay, by, cy) {
+    let is_flat = det.at_most(zero) & zero.at_most(det);
+    let met = inside & !is_flat & !beside(ax, bx, cx) & !beside(ay, by, cy);
+    if T::bits(met) == 0 {
         return None;
     }
-    let inverse = Real::recip(det);
+    let inverse = det.recip();
     let t = parameter(corners, [u, v, w], shear, inverse);
 
+    let times = |factor: f64, x: T| x.all(factor) * x;
     let reach = max_abs(az, bz, cz);
     let (max_x, max_y) = (max_abs(ax, bx, cx), max_abs(ay, by, cy));
     let max_z = max_abs(shear.z * az, shear.z * bz, shear.z * cz);
     let max_e = max_abs(u, v, w);
-    let dx = gamma(5) * (max_x + shear.x.abs() * reach);
-    let dy = gamma(5) * (max_y + shear.y.abs() * reach);
-    let dz = gamma(3) * max_z;
-    let de = 2.0 * (gamma(2) * max_x * max_y + dy * max_x + dx * max_y);
-    let dt = 3.0 * (gamma(3) * max_e * max_z + de * max_z + dz * max_e) * inverse.abs();
+    let dx = times(gamma(5), max_x + shear.x.abs() * reach);
+    let dy = times(gamma(5), max_y + shear.y.abs() * reach);
+    let dz = times(gamma(3), max_z);
+    let de = times(2.0, times(gamma(2), max_x) * max_y + dy * max_x + dx * max_y);
+    let dt = times(3.0, times(gamma(3), max_e) * max_z + de * max_z + dz * max_e) * inverse.abs();
 
     // An accepting comparison: a NaN anywhere above ends here as a miss.
-    (t > dt && t < f64::INFINITY)
-        .then(|| TriangleHit { t, barycentric: DVec3::new(u, v, w) * inverse })
+    let met = met & dt.below(t) & t.below(zero.all(f64::INFINITY));
+    Some((t, [u * inverse, v * inverse, w * inverse], met))
 }
 
 /// Whether the ray, at 0 in sheared coordinates, lies outside the range of three corners.
 #[inline(always)]
-fn beside(a: f64, b: f64, c: f64) -> bool {
-    min(a, b, c) > 0.0 || max(a, b, c) < 0.0
-}
-
-/// The smallest, by comparisons that become single instructions; `f64::min` also looks after NaN,
-/// which the last test of [`sheared`] does.
-#[inline(always)]
-fn min(a: f64, b: f64, c: f64) -> f64 {
-    let ab = if a < b { a } else { b };
-    if ab < c { ab } else { c }
-}
-
-/// The largest, in the same way as [`min`].
-#[inline(always)]
-fn max(a: f64, b: f64, c: f64) -> f64 {
-    let ab = if a > b { a } else { b };
-    if ab > c { ab } else { c }
+fn beside<T: Real>(a: T, b: T, c: T) -> T::Mask {
+    let zero = a.all(0.0);
+    !(min(a, b, c).at_most(zero) & zero.at_most(max(a, b, c)))
 }
 
 #[inline(always)]
-fn max_abs(a: f64, b: f64, c: f64) -> f64 {
+fn min<T: Real>(a: T, b: T, c: T) -> T {
+    a.smaller(b).smaller(c)
+}
+
+#[inline(always)]
+fn max<T: Real>(a: T, b: T, c: T) -> T {
+    a.larger(b).larger(c)
+}
+
+#[inline(always)]
+fn max_abs<T: Real>(a: T, b: T, c: T) -> T {
     max(a.abs(), b.abs(), c.abs())
 }

@@ -1,11 +1,31 @@
-//! Reads the picture of an EXR file, whose channels may have any names.
+//! Writes a picture as an EXR file, and reads the one of an EXR file whose channels may have any names.
 
-use std::io::{BufRead, Seek};
+use std::io::{BufRead, Cursor, Seek};
 
 use exr::block::reader::Reader;
 use exr::math::Vec2;
 use exr::meta::header::Header;
-use exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel, Text, read};
+use exr::prelude::{
+    ReadChannels, ReadLayers, ReadSpecificChannel, SpecificChannels, Text, WritableImage, read,
+};
+
+use super::Image;
+
+/// The file of a picture: its channels R, G and B, bit for bit.
+pub(super) fn encode(image: &Image) -> Result<Vec<u8>, exr::error::Error> {
+    let [width, height] = [image.size.width, image.size.height].map(|side| side as usize);
+    let pixel = |place: Vec2<usize>| {
+        let [r, g, b] = image.pixels[place.y() * width + place.x()];
+        (r, g, b)
+    };
+    let mut file = Cursor::new(Vec::new());
+    exr::image::Image::from_channels((width, height), SpecificChannels::rgb(pixel))
+        .write()
+        // Several threads would write their blocks in the order in which these are ready.
+        .non_parallel()
+        .to_buffered(&mut file)?;
+    Ok(file.into_inner())
+}
 
 /// An EXR file whose header is read.
 pub(super) struct ExrFile<R> {
