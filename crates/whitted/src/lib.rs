@@ -16,6 +16,7 @@ mod methods;
 mod ray_tree;
 mod recorder;
 mod trace;
+mod waves;
 
 pub use appel::{Appel, Lighting};
 pub use methods::METHODS;

@@ -1,12 +1,13 @@
 //! A few primitives, without a tree: four at a time in `f64`.
 
+use glam::DVec3;
 use lancer_core::geometry::{
     Axis, Interval, Ray, Real, Shear, intersect_spheres, intersect_triangles,
 };
 use lancer_core::intersector::{Hit, Observer};
 use lancer_core::scene::{PrimitiveId, Shape, Subset};
 
-use super::lanes::Lanes;
+use super::lanes::{Lanes, gather};
 
 /// So many primitives are asked one and all: a tree would cost more.
 pub(super) const FEW: usize = 64;
@@ -76,47 +77,106 @@ impl Few {
         self.ids.iter().flatten().flatten().copied()
     }
 
-    /// Tells which of each group the ray meets, where, and with what weights, until `found` says that it is enough.
+    /// Asks a ray in all lanes about four primitives at a time (`places` is [`TOGETHER`]), or four rays about one at a
+    /// time ([`APART`]). `found` is told what is met in any lane, until it says that it is enough.
     #[inline(always)]
     fn ask<L: Lanes>(
         &self,
         lanes: L,
-        ray: &Ray,
+        rays: &Rays<L>,
+        places: &[Option<usize>],
         range: Interval,
         mut found: impl FnMut(Met<L>) -> bool,
     ) {
         let all = Everywhere(lanes);
-        let [o, d] = [ray.origin, ray.direction].map(|v| v.to_array());
-        let (o, d) = (all.vector(o), all.vector(d));
         let [min, max] = [all.number(range.min), all.number(range.max)];
-        if !self.triangles.is_empty() {
-            let shear = Shear::along(Axis::longest(ray.direction), d);
-            for (group, [a, b, c]) in self.triangles.iter().enumerate() {
+        for (group, [a, b, c]) in self.triangles.iter().enumerate() {
+            for &place in places {
                 let corners = [
-                    difference(all.places(a), o),
-                    difference(all.places(b), o),
-                    difference(all.places(c), o),
+                    difference(all.at(a, place), rays.origin),
+                    difference(all.at(b, place), rays.origin),
+                    difference(all.at(c, place), rays.origin),
                 ];
-                if let Some((t, weights, met)) = intersect_triangles(corners, &shear) {
+                if let Some((t, weights, met)) = intersect_triangles(corners, &rays.shear) {
                     let met = met & min.below(t) & t.below(max);
-                    if L::D::bits(met) != 0 && found(Met { group, t, weights, met }) {
+                    if L::D::bits(met) != 0 && found(Met { group, place, t, weights, met }) {
                         return;
                     }
                 }
             }
         }
-        let none = all.vector([0.0; 3]);
+        // The far point of a sphere is no hit where the near one lies beyond the range.
+        let endless = [min, all.number(f64::INFINITY)];
+        let weights = all.vector([0.0; 3]);
         for (group, (centers, radii)) in (self.triangles.len()..).zip(&self.spheres) {
-            let f = difference(o, all.places(centers));
-            // The sphere's own range test would take the far point for a near one beyond the range.
-            let endless = [min, all.number(f64::INFINITY)];
-            if let Some((t, met)) = intersect_spheres(f, lanes.four(*radii), d, endless) {
-                let met = met & t.below(max);
-                if L::D::bits(met) != 0 && found(Met { group, t, weights: none, met }) {
-                    return;
+            for &place in places {
+                let f = difference(rays.origin, all.at(centers, place));
+                let radius = all.of(radii, place);
+                if let Some((t, met)) = intersect_spheres(f, radius, rays.direction, endless) {
+                    let met = met & t.below(max);
+                    if L::D::bits(met) != 0 && found(Met { group, place, t, weights, met }) {
+                        return;
+                    }
                 }
             }
         }
+    }
+
+    /// What is nearest in each lane.
+    #[inline(always)]
+    fn nearest<L: Lanes>(
+        &self,
+        lanes: L,
+        rays: &Rays<L>,
+        places: &[Option<usize>],
+        range: Interval,
+    ) -> Nearest {
+        let all = Everywhere(lanes);
+        let mut nearest = all.number(f64::INFINITY);
+        let mut place = all.number(-1.0);
+        let mut weights = all.vector([0.0; 3]);
+        self.ask(
+            lanes,
+            rays,
+            places,
+            range,
+            #[inline(always)]
+            |met| {
+                // Of equal ones the first has the smaller id.
+                let nearer = met.met & met.t.below(nearest);
+                let first = (met.group * FOUR + met.place.unwrap_or(0)) as f64;
+                nearest = L::D::select(nearer, met.t, nearest);
+                place = L::D::select(nearer, all.number(first), place);
+                weights = [
+                    L::D::select(nearer, met.weights[0], weights[0]),
+                    L::D::select(nearer, met.weights[1], weights[1]),
+                    L::D::select(nearer, met.weights[2], weights[2]),
+                ];
+                false
+            },
+        );
+        let [u, v, w] = weights;
+        Nearest {
+            t: lanes.numbers(nearest),
+            place: lanes.numbers(place),
+            weights: [lanes.numbers(u), lanes.numbers(v), lanes.numbers(w)],
+        }
+    }
+
+    /// The hit of a lane whose places stand so far behind those of the first lane.
+    #[inline(always)]
+    fn hit(&self, nearest: &Nearest, lane: usize, behind: usize) -> Option<Hit> {
+        let place = nearest.place[lane];
+        if place < 0.0 {
+            return None;
+        }
+        let [u, v, w] = &nearest.weights;
+        let place = place as usize + behind;
+        Some(Hit {
+            t: nearest.t[lane],
+            primitive: self.ids[place / FOUR][place % FOUR]?,
+            barycentric: DVec3::new(u[lane], v[lane], w[lane]),
+        })
     }
 
     /// The closest hit.
@@ -129,40 +189,39 @@ impl Few {
         observer: &mut O,
     ) -> Option<Hit> {
         self.primitives().for_each(|primitive| observer.primitive_test(primitive));
-        let all = Everywhere(lanes);
-        let mut nearest = all.number(f64::INFINITY);
-        let mut groups = all.number(-1.0);
-        let mut weights = all.vector([0.0; 3]);
-        self.ask(
-            lanes,
-            ray,
-            range,
-            #[inline(always)]
-            |met| {
-                // In one place the first group has the smaller id.
-                let nearer = met.met & met.t.below(nearest);
-                nearest = L::D::select(nearer, met.t, nearest);
-                groups = L::D::select(nearer, all.number(met.group as f64), groups);
-                weights = [
-                    L::D::select(nearer, met.weights[0], weights[0]),
-                    L::D::select(nearer, met.weights[1], weights[1]),
-                    L::D::select(nearer, met.weights[2], weights[2]),
-                ];
-                false
-            },
-        );
-        let (nearest, groups) = (lanes.numbers(nearest), lanes.numbers(groups));
-        let order = |&a: &usize, &b: &usize| {
-            nearest[a].total_cmp(&nearest[b]).then(groups[a].total_cmp(&groups[b]))
-        };
-        let place = (0..FOUR).min_by(order)?;
-        // Nothing is met in a place whose group is −1.
-        let primitive = self.ids.get(groups[place] as usize)?[place]?;
-        (groups[place] >= 0.0).then(|| Hit {
-            t: nearest[place],
-            primitive,
-            barycentric: weights.map(|w| lanes.numbers(w)[place]).into(),
-        })
+        let nearest = self.nearest(lanes, &Rays::same(lanes, ray), &TOGETHER, range);
+        // (t, id), whose order is that of their lanes within a group.
+        let key = |lane: usize| (nearest.t[lane], nearest.place[lane]);
+        let mut first = 0;
+        for lane in 1..FOUR {
+            if key(lane) < key(first) {
+                first = lane;
+            }
+        }
+        self.hit(&nearest, first, first)
+    }
+
+    /// The closest hits of many rays.
+    #[inline(always)]
+    pub(super) fn closest_hits<L: Lanes>(
+        &self,
+        lanes: L,
+        rays: &[Ray],
+        range: Interval,
+        hits: &mut [Option<Hit>],
+    ) {
+        for (rays, hits) in rays.chunks(FOUR).zip(hits.chunks_mut(FOUR)) {
+            if let Some(four) = Rays::four(lanes, rays) {
+                let nearest = self.nearest(lanes, &four, &APART, range);
+                for (lane, hit) in hits.iter_mut().enumerate() {
+                    *hit = self.hit(&nearest, lane, 0);
+                }
+            } else {
+                for (ray, hit) in rays.iter().zip(hits) {
+                    *hit = self.closest(lanes, ray, range, &mut ());
+                }
+            }
+        }
     }
 
     /// One that the ray meets.
@@ -174,11 +233,12 @@ impl Few {
         range: Interval,
         observer: &mut O,
     ) -> Option<PrimitiveId> {
-        let mut any = None;
         self.primitives().for_each(|primitive| observer.primitive_test(primitive));
+        let mut any = None;
         self.ask(
             lanes,
-            ray,
+            &Rays::same(lanes, ray),
+            &TOGETHER,
             range,
             #[inline(always)]
             |met| {
@@ -188,17 +248,101 @@ impl Few {
         );
         any
     }
+
+    /// Whether many rays meet anything.
+    #[inline(always)]
+    pub(super) fn occluded<L: Lanes>(
+        &self,
+        lanes: L,
+        rays: &[Ray],
+        range: Interval,
+        occluded: &mut [bool],
+    ) {
+        for (rays, occluded) in rays.chunks(FOUR).zip(occluded.chunks_mut(FOUR)) {
+            if let Some(four) = Rays::four(lanes, rays) {
+                let mut bits = 0;
+                self.ask(
+                    lanes,
+                    &four,
+                    &APART,
+                    range,
+                    #[inline(always)]
+                    |met| {
+                        bits |= L::D::bits(met.met);
+                        bits == (1 << FOUR) - 1
+                    },
+                );
+                for (lane, occluded) in occluded.iter_mut().enumerate() {
+                    *occluded = bits >> lane & 1 != 0;
+                }
+            } else {
+                for (ray, occluded) in rays.iter().zip(occluded) {
+                    *occluded = self.any(lanes, ray, range, &mut ()).is_some();
+                }
+            }
+        }
+    }
 }
 
-/// What is met of a group.
+/// The places of a group are asked about together, one in each lane.
+const TOGETHER: [Option<usize>; 1] = [None];
+/// The places of a group are asked about one after the other, each in all lanes.
+const APART: [Option<usize>; FOUR] = [Some(0), Some(1), Some(2), Some(3)];
+
+/// A ray in each lane.
+struct Rays<L: Lanes> {
+    origin: [L::D; 3],
+    direction: [L::D; 3],
+    shear: Shear<L::D>,
+}
+
+impl<L: Lanes> Rays<L> {
+    /// The same in all lanes.
+    #[inline(always)]
+    fn same(lanes: L, ray: &Ray) -> Self {
+        let all = Everywhere(lanes);
+        let origin = all.vector([ray.origin.x, ray.origin.y, ray.origin.z]);
+        let direction = all.vector([ray.direction.x, ray.direction.y, ray.direction.z]);
+        let shear = Shear::along(Axis::longest(ray.direction), direction);
+        Self { origin, direction, shear }
+    }
+
+    /// Four rays, if there are four and they go along the same axis most.
+    #[inline(always)]
+    fn four(lanes: L, rays: &[Ray]) -> Option<Self> {
+        let [a, b, c, d] = rays else { return None };
+        let axis = Axis::longest(a.direction);
+        if axis != Axis::longest(b.direction)
+            || axis != Axis::longest(c.direction)
+            || axis != Axis::longest(d.direction)
+        {
+            return None;
+        }
+        let origin = gather(lanes, [a.origin, b.origin, c.origin, d.origin]);
+        let direction = gather(lanes, [a.direction, b.direction, c.direction, d.direction]);
+        Some(Self { origin, direction, shear: Shear::along(axis, direction) })
+    }
+}
+
+/// What is met in some lanes.
 struct Met<L: Lanes> {
     group: usize,
+    /// `None` if each lane has its own.
+    place: Option<usize>,
     t: L::D,
     weights: [L::D; 3],
     met: <L::D as Real>::Mask,
 }
 
-/// Numbers that are the same in all places, or not.
+/// The nearest in each lane so far.
+struct Nearest {
+    t: [f64; FOUR],
+    /// Its place among all, for lanes with places of their own that of the first lane; −1 if nothing is met.
+    place: [f64; FOUR],
+    weights: [[f64; FOUR]; 3],
+}
+
+/// Fills lanes.
 #[derive(Clone, Copy)]
 struct Everywhere<L>(L);
 
@@ -213,9 +357,18 @@ impl<L: Lanes> Everywhere<L> {
         [self.number(x), self.number(y), self.number(z)]
     }
 
+    /// The number of one place, or those of all.
     #[inline(always)]
-    fn places(self, [x, y, z]: &[[f64; FOUR]; 3]) -> [L::D; 3] {
-        [self.0.four(*x), self.0.four(*y), self.0.four(*z)]
+    fn of(self, places: &[f64; FOUR], place: Option<usize>) -> L::D {
+        match place {
+            Some(place) => self.number(places[place]),
+            None => self.0.four(*places),
+        }
+    }
+
+    #[inline(always)]
+    fn at(self, [x, y, z]: &[[f64; FOUR]; 3], place: Option<usize>) -> [L::D; 3] {
+        [self.of(x, place), self.of(y, place), self.of(z, place)]
     }
 }
 

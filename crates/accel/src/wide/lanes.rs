@@ -1,6 +1,6 @@
 //! Eight `f32`, or four `f64`, at once: by AVX2 where the processor has it, and by a scalar twin everywhere.
 
-use glam::DVec4;
+use glam::{DVec3, DVec4};
 use lancer_core::geometry::Real;
 
 /// A way to compute with eight numbers, or four, at once.
@@ -76,6 +76,12 @@ pub(super) fn cross<L: Lanes>(l: L, a: Vectors<L>, b: Vectors<L>) -> Vectors<L> 
 #[inline(always)]
 pub(super) fn dot<L: Lanes>(l: L, a: Vectors<L>, b: Vectors<L>) -> L::F {
     l.mul_add(a[0], b[0], l.mul_add(a[1], b[1], l.mul(a[2], b[2])))
+}
+
+/// The components of four vectors.
+#[inline(always)]
+pub(super) fn gather<L: Lanes>(l: L, [a, b, c, d]: [DVec3; 4]) -> [L::D; 3] {
+    [l.four([a.x, b.x, c.x, d.x]), l.four([a.y, b.y, c.y, d.y]), l.four([a.z, b.z, c.z, d.z])]
 }
 
 /// The smallest of eight numbers, none of which is NaN.

@@ -397,11 +397,7 @@ impl<'s> Wide<'s> {
         hits: &mut [Option<Hit>],
     ) {
         match &self.few {
-            Some(few) => {
-                for (ray, hit) in rays.iter().zip(hits) {
-                    *hit = few.closest(lanes, ray, range, &mut ());
-                }
-            }
+            Some(few) => few.closest_hits(lanes, rays, range, hits),
             None => packet::closest(lanes, self, rays, range, hits),
         }
     }
@@ -414,8 +410,13 @@ impl<'s> Wide<'s> {
         range: Interval,
         occluded: &mut [bool],
     ) {
-        for (ray, occluded) in rays.iter().zip(occluded) {
-            *occluded = self.any_by(lanes, ray, range, &mut ()).is_some();
+        match &self.few {
+            Some(few) => few.occluded(lanes, rays, range, occluded),
+            None => {
+                for (ray, occluded) in rays.iter().zip(occluded) {
+                    *occluded = walk::any(lanes, self, ray, range, &mut ()).is_some();
+                }
+            }
         }
     }
 }

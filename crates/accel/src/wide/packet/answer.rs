@@ -5,7 +5,7 @@ use lancer_core::geometry::{Axis, Real, Shear, solve_triangle};
 use lancer_core::intersector::{Hit, Probe};
 
 use super::super::collapse::WIDTH;
-use super::super::lanes::Lanes;
+use super::super::lanes::{Lanes, gather};
 use super::{NONE, Packet, RAYS};
 
 impl<L: Lanes> Packet<'_, '_, L> {
@@ -84,12 +84,6 @@ impl<L: Lanes> Packet<'_, '_, L> {
             hits[k] = probe.best();
         }
     }
-}
-
-/// The components of four vectors.
-#[inline(always)]
-fn gather<L: Lanes>(l: L, [a, b, c, d]: [DVec3; 4]) -> [L::D; 3] {
-    [l.four([a.x, b.x, c.x, d.x]), l.four([a.y, b.y, c.y, d.y]), l.four([a.z, b.z, c.z, d.z])]
 }
 
 #[inline(always)]
