@@ -8,7 +8,8 @@ use lancer_core::scene::PrimitiveId;
 
 use super::collapse::WIDTH;
 use super::lanes::{Lanes, Vectors, cross, dot, splat3, sub3};
-use super::{Child, HEADER, Node, Wide};
+use super::leaf::HEADER;
+use super::{Child, Node, Wide};
 use crate::bvh::MAX_DEPTH;
 use crate::four_boxes::FourSlabs;
 

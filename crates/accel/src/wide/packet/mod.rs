@@ -9,8 +9,9 @@ use smallvec::SmallVec;
 
 use super::collapse::WIDTH;
 use super::lanes::{Lanes, Vectors, cross, dot, most, splat3, sub3};
+use super::leaf::HEADER;
 use super::walk::{self, Bounds, Filtered, MOST_PENDING, Stack, TriangleBounds, child, near};
-use super::{Child, HEADER, Node, Wide};
+use super::{Child, Node, Wide};
 
 /// Rays of a packet at most: 8 × 8 pixels.
 const RAYS: usize = 64;
