@@ -234,8 +234,8 @@ impl FourSlabs {
         let origin = frame.point(ray.origin).as_vec3a();
         let direction = ray.direction.as_vec3a();
         let length = direction.abs();
-        let is_near = origin.abs().cmple(Vec3A::splat(NEAR)).all()
-            && length.cmplt(Vec3A::splat(LONG)).all()
+        let is_near = (origin.abs().cmple(Vec3A::splat(NEAR)) & length.cmplt(Vec3A::splat(LONG)))
+            .all()
             && length.cmpgt(Vec3A::splat(LONG.recip())).any();
         // The usual case stays in registers.
         let (origin, direction, moved, per_unit, skipped) = if is_near {

@@ -43,8 +43,21 @@ pub(super) trait Lanes: Copy {
     fn numbers(self, x: Self::D) -> [f64; 4];
     /// Eight `f64`, rounded.
     fn narrow(self, low: Self::D, high: Self::D) -> Self::F;
+    /// What `x` refers to, to be read where it is used: the compiler would broadcast a ray's numbers once and store
+    /// the lanes.
+    fn read_here<T>(self, x: &T) -> &T;
     /// Brings what will be read soon into the caches.
     fn prefetch<T>(self, soon: &T);
+    /// Calls `f`, which is compiled for this way with everything inlined into it. Arguments go in registers:
+    /// through the memory of a closure they would be read in other pieces than written.
+    fn call<A, B, C, D, R>(
+        self,
+        a: A,
+        b: B,
+        c: C,
+        d: D,
+        f: impl FnOnce(Self, A, B, C, D) -> R,
+    ) -> R;
     /// Calls `f`, compiled apart: what it needs in registers does not displace what its caller has there.
     fn apart<R>(self, f: impl FnOnce(Self) -> R) -> R;
 }
@@ -212,7 +225,24 @@ impl Lanes for Scalar {
     }
 
     #[inline(always)]
+    fn read_here<T>(self, x: &T) -> &T {
+        x
+    }
+
+    #[inline(always)]
     fn prefetch<T>(self, _: &T) {}
+
+    #[inline(never)]
+    fn call<A, B, C, D, R>(
+        self,
+        a: A,
+        b: B,
+        c: C,
+        d: D,
+        f: impl FnOnce(Self, A, B, C, D) -> R,
+    ) -> R {
+        f(self, a, b, c, d)
+    }
 
     #[inline(never)]
     fn apart<R>(self, f: impl FnOnce(Self) -> R) -> R {
@@ -227,6 +257,7 @@ pub(super) mod avx2 {
     //! of [`Avx2`] exists only where the processor was found to have both. Loads and stores go through
     //! references or slices whose lengths are checked.
 
+    use std::arch::asm;
     use std::arch::x86_64::*;
     use std::ops::{Add, Mul, Sub};
 
@@ -247,33 +278,6 @@ pub(super) mod avx2 {
                 && is_x86_feature_detected!("lzcnt")
                 && is_x86_feature_detected!("popcnt");
             found.then_some(Self(()))
-        }
-
-        /// Calls `f`, which is compiled for this processor with everything inlined into it. Arguments go in
-        /// registers: through the memory of a closure they would be read in other pieces than written.
-        #[inline(always)]
-        pub(in crate::wide) fn call<A, B, C, D, R>(
-            self,
-            a: A,
-            b: B,
-            c: C,
-            d: D,
-            f: impl FnOnce(Self, A, B, C, D) -> R,
-        ) -> R {
-            #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-            #[inline]
-            fn inner<A, B, C, D, R>(
-                lanes: Avx2,
-                a: A,
-                b: B,
-                c: C,
-                d: D,
-                f: impl FnOnce(Avx2, A, B, C, D) -> R,
-            ) -> R {
-                f(lanes, a, b, c, d)
-            }
-            // SAFETY: `self` says that the processor has these features.
-            unsafe { inner(self, a, b, c, d, f) }
         }
     }
 
@@ -428,8 +432,43 @@ pub(super) mod avx2 {
         }
 
         #[inline(always)]
+        fn read_here<T>(self, x: &T) -> &T {
+            let mut place = std::ptr::from_ref(x);
+            // SAFETY: no instruction changes the place; the compiler does not know.
+            unsafe {
+                asm!("/* {0} */", inout(reg) place, options(readonly, nostack, preserves_flags));
+                &*place
+            }
+        }
+
+        #[inline(always)]
         fn prefetch<T>(self, soon: &T) {
             unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(soon).cast()) }
+        }
+
+        #[inline(always)]
+        fn call<A, B, C, D, R>(
+            self,
+            a: A,
+            b: B,
+            c: C,
+            d: D,
+            f: impl FnOnce(Self, A, B, C, D) -> R,
+        ) -> R {
+            #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+            #[inline]
+            fn inner<A, B, C, D, R>(
+                lanes: Avx2,
+                a: A,
+                b: B,
+                c: C,
+                d: D,
+                f: impl FnOnce(Avx2, A, B, C, D) -> R,
+            ) -> R {
+                f(lanes, a, b, c, d)
+            }
+            // SAFETY: `self` says that the processor has these features.
+            unsafe { inner(self, a, b, c, d, f) }
         }
 
         #[inline(always)]

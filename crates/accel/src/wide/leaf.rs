@@ -12,7 +12,7 @@
 
 use lancer_core::scene::{PrimitiveId, Scene, Shape};
 
-use super::walk::U;
+use super::filter::U;
 use crate::binary_tree::BinaryTree;
 
 /// Edges count as this long at least.

@@ -1,6 +1,7 @@
 //! « Accélération matérielle », on the processor: eight boxes, then eight triangles at a time.
 
 mod collapse;
+mod filter;
 mod lanes;
 mod leaf;
 mod packet;
@@ -17,9 +18,9 @@ use crate::binary_tree::{BinaryTree, Coverage};
 use crate::four_boxes::{Frame, FrameBox};
 use crate::front::Front;
 use collapse::WIDTH;
-use lanes::Scalar;
 #[cfg(target_arch = "x86_64")]
 use lanes::avx2::Avx2;
+use lanes::{Lanes, Scalar};
 use leaf::{HEADER, RECORD, UNIT, integer_of};
 
 /// A hierarchy of eight children per node: culled eight at a time in `f32`, answered in `f64`.
@@ -290,7 +291,11 @@ impl<'s> Wide<'s> {
                     walk::closest(lanes, wide, ray, range, observer)
                 },
             ),
-            Kernel::Scalar(lanes) => walk::closest(lanes, self, ray, range, observer),
+            Kernel::Scalar(scalar) => {
+                scalar.call(self, ray, range, observer, |lanes, wide, ray, range, observer| {
+                    walk::closest(lanes, wide, ray, range, observer)
+                })
+            }
         }
     }
 
@@ -311,7 +316,11 @@ impl<'s> Wide<'s> {
                 #[inline(always)]
                 |lanes, wide, ray, range, observer| walk::any(lanes, wide, ray, range, observer),
             ),
-            Kernel::Scalar(lanes) => walk::any(lanes, self, ray, range, observer),
+            Kernel::Scalar(scalar) => {
+                scalar.call(self, ray, range, observer, |lanes, wide, ray, range, observer| {
+                    walk::any(lanes, wide, ray, range, observer)
+                })
+            }
         }
     }
 }
@@ -339,6 +348,24 @@ impl Intersector for Wide<'_> {
 
     fn occluded(&self, ray: &Ray, range: Interval) -> bool {
         self.any(ray, range, &mut ()).is_some()
+    }
+
+    fn occluded_all(&self, rays: &[Ray], range: Interval, occluded: &mut [bool]) {
+        assert_eq!(rays.len(), occluded.len(), "one answer for each ray");
+        match self.kernel {
+            #[cfg(target_arch = "x86_64")]
+            Kernel::Avx2(avx2) => avx2.call(
+                self,
+                rays,
+                range,
+                occluded,
+                #[inline(always)]
+                |lanes, wide, rays, range, occluded| {
+                    walk::any_each(lanes, wide, rays, range, occluded)
+                },
+            ),
+            Kernel::Scalar(lanes) => walk::any_each(lanes, self, rays, range, occluded),
+        }
     }
 
     fn watch(&self, query: Query<&Ray>, mut observer: &mut dyn Observer) -> Option<Hit> {
