@@ -12,6 +12,8 @@ pub(super) trait Lanes: Copy {
     type F: Copy;
     /// Four `f64`.
     type D: Real;
+    /// One `f64`, perhaps several times.
+    type One: Real;
 
     fn splat(self, x: f32) -> Self::F;
     fn load(self, x: &[f32; 8]) -> Self::F;
@@ -41,6 +43,8 @@ pub(super) trait Lanes: Copy {
     fn select(self, bits: u32, a: Self::F, b: Self::F) -> Self::F;
     fn four(self, x: [f64; 4]) -> Self::D;
     fn numbers(self, x: Self::D) -> [f64; 4];
+    fn one(self, x: f64) -> Self::One;
+    fn number(self, x: Self::One) -> f64;
     /// Eight `f64`, rounded.
     fn narrow(self, low: Self::D, high: Self::D) -> Self::F;
     /// What `x` refers to, to be read where it is used: the compiler would broadcast a ray's numbers once and store
@@ -123,6 +127,7 @@ fn bits(f: impl Fn(usize) -> bool) -> u32 {
 impl Lanes for Scalar {
     type F = [f32; 8];
     type D = DVec4;
+    type One = f64;
 
     #[inline(always)]
     fn splat(self, x: f32) -> [f32; 8] {
@@ -217,6 +222,16 @@ impl Lanes for Scalar {
     #[inline(always)]
     fn numbers(self, x: DVec4) -> [f64; 4] {
         x.into()
+    }
+
+    #[inline(always)]
+    fn one(self, x: f64) -> f64 {
+        x
+    }
+
+    #[inline(always)]
+    fn number(self, x: f64) -> f64 {
+        x
     }
 
     #[inline(always)]
@@ -320,6 +335,7 @@ pub(super) mod avx2 {
     impl Lanes for Avx2 {
         type F = __m256;
         type D = Four;
+        type One = Four;
 
         #[inline(always)]
         fn splat(self, x: f32) -> __m256 {
@@ -424,6 +440,16 @@ pub(super) mod avx2 {
             let mut numbers = [0.0; 4];
             unsafe { _mm256_storeu_pd(numbers.as_mut_ptr(), x.0) };
             numbers
+        }
+
+        #[inline(always)]
+        fn one(self, x: f64) -> Four {
+            Four(unsafe { _mm256_set1_pd(x) })
+        }
+
+        #[inline(always)]
+        fn number(self, x: Four) -> f64 {
+            unsafe { _mm256_cvtsd_f64(x.0) }
         }
 
         #[inline(always)]

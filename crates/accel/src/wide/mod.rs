@@ -1,6 +1,7 @@
 //! « Accélération matérielle », on the processor: eight boxes, then eight triangles at a time.
 
 mod collapse;
+mod decide;
 mod filter;
 mod lanes;
 mod leaf;
@@ -234,20 +235,6 @@ impl<'s> Wide<'s> {
     fn corners(&self, [a, b, c]: [usize; 3]) -> [DVec3; 3] {
         let positions = &self.scene.mesh.positions;
         [positions[a], positions[b], positions[c]]
-    }
-
-    /// Lets `f64` decide on a triangle.
-    #[inline(always)]
-    fn test(&self, probe: &mut Probe, record: u32) -> bool {
-        let (id, corners) = self.triangle(record);
-        probe.test_triangle(id, self.corners(corners))
-    }
-
-    /// The same for one that is met in any case.
-    #[inline(always)]
-    fn solve(&self, probe: &mut Probe, record: u32) -> bool {
-        let (id, corners) = self.triangle(record);
-        probe.solve_triangle(id, self.corners(corners))
     }
 
     /// The primitives of a leaf.

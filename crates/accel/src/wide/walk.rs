@@ -8,6 +8,7 @@ use lancer_core::intersector::{Hit, Observer, Probe};
 use lancer_core::scene::PrimitiveId;
 
 use super::collapse::WIDTH;
+use super::decide::Decision;
 use super::filter::{Bounds, Filtered, U};
 use super::lanes::{Lanes, Vectors, cross, dot, splat3, sub3};
 use super::leaf::HEADER;
@@ -374,11 +375,28 @@ impl<L: Lanes> Walker<L> for Closest<'_, L> {
             self.candidates.push(key(lowest[lane], what));
         }
         if self.candidates.length > CANDIDATES - WIDTH {
-            let (candidates, max) = (self.candidates.take(), self.max);
-            let t = make_room(wide, candidates, ray.slabs, max, self.ray, self.range, self.early);
-            self.max = self.max.min(ray.slabs.parameter(t));
+            self.make_room();
         }
         ControlFlow::Continue(())
+    }
+}
+
+impl<L: Lanes> Closest<'_, L> {
+    /// Decides on the candidates, so that there is room for others.
+    #[inline(always)]
+    fn make_room(&mut self) {
+        let (wide, ray, range, max) = (self.wide, self.ray, self.range, self.max);
+        let (candidates, slabs) = (self.candidates.take(), &self.in_frame.slabs);
+        let early = &mut *self.early;
+        let end = self.lanes.apart(
+            #[inline(always)]
+            move |lanes| {
+                let decision = Decision::new(lanes, wide, ray, range, *early);
+                *early = decide(decision, candidates, slabs, max);
+                early.map_or(range.max, |hit| hit.t)
+            },
+        );
+        self.max = self.max.min(slabs.parameter(end));
     }
 }
 
@@ -391,7 +409,10 @@ fn test_spheres(
     range: Interval,
     early: &mut Option<Hit>,
 ) -> f64 {
-    let mut probe = begun(wide, ray, range, *early);
+    let mut probe = Probe::new(wide.scene, ray, range);
+    if let Some(hit) = *early {
+        probe.keep(hit);
+    }
     for sphere in wide.primitives(leaf) {
         probe.test(sphere);
     }
@@ -399,57 +420,27 @@ fn test_spheres(
     probe.range().max
 }
 
-/// A probe that has met something already.
+/// Lets `f64` decide on candidates up to `max`. What came last is nearest more often than not.
 #[inline(always)]
-fn begun<'w>(wide: &'w Wide, ray: &'w Ray, range: Interval, early: Option<Hit>) -> Probe<'w> {
-    let mut probe = Probe::new(wide.scene, ray, range);
-    if let Some(hit) = early {
-        probe.keep(hit);
-    }
-    probe
-}
-
-/// Decides on candidates, so that there is room for others. Returns where the closest hit is now.
-#[inline(never)]
-fn make_room(
-    wide: &Wide,
-    candidates: Stack<CANDIDATES>,
-    slabs: FourSlabs,
-    max: f32,
-    ray: &Ray,
-    range: Interval,
-    early: &mut Option<Hit>,
-) -> f64 {
-    let mut probe = begun(wide, ray, range, *early);
-    decide(wide, candidates, &slabs, &mut probe, max);
-    *early = probe.best();
-    probe.range().max
-}
-
-/// Lets `f64` decide on candidates up to `max`. What came last is nearest more often than not. Returns up to
-/// where there may be a closer hit.
-#[inline(always)]
-fn decide(
-    wide: &Wide,
+fn decide<L: Lanes>(
+    mut decision: Decision<L>,
     mut candidates: Stack<CANDIDATES>,
     slabs: &FourSlabs,
-    probe: &mut Probe,
     mut max: f32,
-) {
+) -> Option<Hit> {
     while let Some(candidate) = candidates.pop() {
         if near(candidate) > max {
             continue;
         }
         let what = candidate as u32;
-        let is_closer = if what & CERTAIN == 0 {
-            wide.test(probe, what)
-        } else {
-            wide.solve(probe, what & !CERTAIN)
-        };
-        if is_closer {
-            max = max.min(slabs.parameter(probe.range().max));
+        if decision.test(what & !CERTAIN, what & CERTAIN != 0) {
+            let end = slabs.parameter(decision.end());
+            if end < max {
+                max = end;
+            }
         }
     }
+    decision.best()
 }
 
 /// The closest hit.
@@ -473,12 +464,12 @@ pub(super) fn closest<L: Lanes, O: Observer>(
         Closest { lanes, wide, ray, range, in_frame, early: &mut early, candidates, max };
     let _ = walk(lanes, wide, &mut closest, observer);
     let Closest { candidates, max, early, .. } = closest;
+    let early = *early;
     if candidates.length == 0 && early.is_none() {
         return None;
     }
-    let mut probe = begun(wide, lanes.read_here(ray), range, *early);
-    decide(wide, candidates, &in_frame.slabs, &mut probe, max);
-    probe.best()
+    let decision = Decision::new(lanes, wide, lanes.read_here(ray), range, early);
+    decide(decision, candidates, &in_frame.slabs, max)
 }
 
 /// The closest hit of each of many rays.
@@ -547,27 +538,34 @@ impl<L: Lanes> Walker<L> for Any<'_, L> {
                 return ControlFlow::Break(());
             }
         }
-        self.found = test_leaf(wide, leaf, kept, self.ray, self.range);
+        self.found = self.test(leaf, kept);
         if self.found.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
 
-/// Lets `f64` decide on what the filter kept of a leaf, or on its spheres. Returns what the ray meets.
-#[inline(never)]
-fn test_leaf(
-    wide: &Wide,
-    leaf: Child,
-    kept: u32,
-    ray: &Ray,
-    range: Interval,
-) -> Option<PrimitiveId> {
-    let mut probe = Probe::new(wide.scene, ray, range);
-    if leaf.has_spheres() {
-        return wide.primitives(leaf).find(|&primitive| probe.test(primitive));
+impl<L: Lanes> Any<'_, L> {
+    /// Lets `f64` decide on what the filter kept of a leaf, or on its spheres. Returns what the ray meets.
+    #[inline(always)]
+    fn test(&self, leaf: Child, kept: u32) -> Option<PrimitiveId> {
+        let (wide, ray, range) = (self.wide, self.ray, self.range);
+        if leaf.has_spheres() {
+            let mut early = None;
+            test_spheres(wide, leaf, ray, range, &mut early);
+            return early.map(|hit| hit.primitive);
+        }
+        self.lanes.apart(
+            #[inline(always)]
+            move |lanes| {
+                let mut decision = Decision::new(lanes, wide, ray, range, None);
+                for lane in Bits::<WIDTH>(kept) {
+                    if decision.test(Wide::record(leaf, lane), false) {
+                        return decision.best().map(|hit| hit.primitive);
+                    }
+                }
+                None
+            },
+        )
     }
-    let mut records = Bits::<WIDTH>(kept).map(|lane| Wide::record(leaf, lane));
-    let met = records.find(|&record| wide.test(&mut probe, record))?;
-    Some(wide.triangle(met).0)
 }
 
 /// Any hit.
