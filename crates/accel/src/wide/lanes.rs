@@ -50,6 +50,8 @@ pub(super) trait Lanes: Copy {
     /// What `x` refers to, to be read where it is used: the compiler would broadcast a ray's numbers once and store
     /// the lanes.
     fn read_here<T>(self, x: &T) -> &T;
+    /// A number, read by itself and not together with its neighbours.
+    fn read_alone(self, x: &f64) -> f64;
     /// Brings what will be read soon into the caches.
     fn prefetch<T>(self, soon: &T);
     /// Calls `f`, which is compiled for this way with everything inlined into it. Arguments go in registers:
@@ -242,6 +244,11 @@ impl Lanes for Scalar {
     #[inline(always)]
     fn read_here<T>(self, x: &T) -> &T {
         x
+    }
+
+    #[inline(always)]
+    fn read_alone(self, x: &f64) -> f64 {
+        *x
     }
 
     #[inline(always)]
@@ -465,6 +472,12 @@ pub(super) mod avx2 {
                 asm!("/* {0} */", inout(reg) place, options(readonly, nostack, preserves_flags));
                 &*place
             }
+        }
+
+        #[inline(always)]
+        fn read_alone(self, x: &f64) -> f64 {
+            // SAFETY: a reference can be read through.
+            unsafe { std::ptr::from_ref(x).read_volatile() }
         }
 
         #[inline(always)]

@@ -3,6 +3,7 @@
 use std::mem::MaybeUninit;
 use std::ops::ControlFlow;
 
+use glam::DVec3;
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::intersector::{Hit, Observer, Probe};
 use lancer_core::scene::PrimitiveId;
@@ -220,6 +221,13 @@ pub(super) struct WideRay {
     bounds: Bounds,
 }
 
+/// A vector whose numbers are read one by one: two that have just been written each by itself, as those of most rays
+/// have, cannot be read together without waiting for both.
+#[inline(always)]
+fn one_by_one<L: Lanes>(lanes: L, DVec3 { x, y, z }: &DVec3) -> DVec3 {
+    DVec3::new(lanes.read_alone(x), lanes.read_alone(y), lanes.read_alone(z))
+}
+
 /// What tests eight boxes, ready in registers.
 pub(super) struct Boxes<L: Lanes> {
     negative: u32,
@@ -231,8 +239,9 @@ pub(super) struct Boxes<L: Lanes> {
 
 impl WideRay {
     #[inline(always)]
-    pub(super) fn new(wide: &Wide, ray: &Ray) -> Self {
-        let slabs = FourSlabs::new(ray, &wide.frame);
+    pub(super) fn new<L: Lanes>(lanes: L, wide: &Wide, ray: &Ray) -> Self {
+        let numbers = [one_by_one(lanes, &ray.origin), one_by_one(lanes, &ray.direction)];
+        let slabs = FourSlabs::of_numbers(ray, numbers, &wide.frame);
         let reach = 1.0 + slabs.origin.abs().max_element() + slabs.moved / U;
         let bounds = Bounds::new(reach, slabs.direction.abs().max_element());
         Self { slabs, bounds }
@@ -455,7 +464,7 @@ pub(super) fn closest<L: Lanes, O: Observer>(
     if wide.nodes.is_empty() {
         return None;
     }
-    let in_frame = &WideRay::new(wide, ray);
+    let in_frame = &WideRay::new(lanes, wide, ray);
     let max = in_frame.slabs.parameter(range.max);
     let mut space = Stack::SPACE;
     let mut early = None;
@@ -580,7 +589,7 @@ pub(super) fn any<L: Lanes, O: Observer>(
     if wide.nodes.is_empty() {
         return None;
     }
-    let in_frame = &WideRay::new(wide, ray);
+    let in_frame = &WideRay::new(lanes, wide, ray);
     let max = in_frame.slabs.parameter(range.max);
     let mut any = Any { lanes, wide, ray, range, in_frame, max, found: None };
     let _ = walk(lanes, wide, &mut any, observer);
