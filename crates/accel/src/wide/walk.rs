@@ -371,9 +371,6 @@ impl<L: Lanes> Walker<L> for Closest<'_, L> {
         let highest = lanes.store(highest);
         for lane in Bits::<WIDTH>(filtered.kept) {
             let record = Wide::record(leaf, lane);
-            for corner in wide.triangle(record).1 {
-                lanes.prefetch(&wide.scene.mesh.positions[corner]);
-            }
             let mut what = record;
             if certain >> lane & 1 != 0 {
                 what |= CERTAIN;
