@@ -55,8 +55,8 @@ pub(super) fn walk<L: Lanes, W: Walker<L>, O: Observer>(
     let mut space = Stack::<MOST_PENDING>::SPACE;
     let mut pending = Stack::new(&mut space);
     let mut next = Child::node(0);
+    let mut boxes = walker.boxes();
     loop {
-        let boxes = walker.boxes();
         while !next.is_leaf() {
             let node = &wide.nodes[next.0 as usize];
             wide.watch_node(node, observer);
@@ -82,6 +82,7 @@ pub(super) fn walk<L: Lanes, W: Walker<L>, O: Observer>(
             return ControlFlow::Continue(());
         };
         next = child;
+        boxes = walker.boxes();
     }
 }
 
@@ -258,7 +259,7 @@ impl WideRay {
     /// What tests boxes that the ray meets before `max`.
     #[inline(always)]
     fn boxes<L: Lanes>(&self, lanes: L, max: f32) -> Boxes<L> {
-        let slabs = lanes.read_here(&self.slabs);
+        let slabs = &self.slabs;
         Boxes {
             negative: slabs.negative,
             inverse: splat3(lanes, slabs.inverse.to_array()),
@@ -277,7 +278,7 @@ impl WideRay {
         count: usize,
         max: f32,
     ) -> Filtered<L::F> {
-        let Self { slabs, bounds } = l.read_here(self);
+        let Self { slabs, bounds } = self;
         let [ax, ay, az, ex, ey, ez, fx, fy, fz] = l.rows::<9>(&words[HEADER..], count);
         let (e, f) = ([ex, ey, ez], [fx, fy, fz]);
         let origin = splat3(l, slabs.origin.to_array());
@@ -356,6 +357,7 @@ impl<L: Lanes> Walker<L> for Closest<'_, L> {
     /// Sorts out the triangles of a leaf.
     #[inline(always)]
     fn visit(&mut self, leaf: Child) -> ControlFlow<()> {
+        self.in_frame = self.lanes.read_here(self.in_frame);
         let (wide, lanes, ray) = (self.wide, self.lanes, self.in_frame);
         if leaf.has_spheres() {
             let t = test_spheres(wide, leaf, self.ray, self.range, self.early);
@@ -527,6 +529,7 @@ impl<L: Lanes> Walker<L> for Any<'_, L> {
     /// Looks for a primitive of a leaf that the ray meets.
     #[inline(always)]
     fn visit(&mut self, leaf: Child) -> ControlFlow<()> {
+        self.in_frame = self.lanes.read_here(self.in_frame);
         let (wide, lanes, ray) = (self.wide, self.lanes, self.in_frame);
         let mut kept = 0;
         if !leaf.has_spheres() {
