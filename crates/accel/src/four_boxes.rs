@@ -231,11 +231,17 @@ impl FourSlabs {
     /// Prepares the tests of a ray.
     #[inline(always)] // Written to memory and read back in other pieces it costs as much as a node.
     pub fn new(ray: &Ray, frame: &Frame) -> Self {
-        let origin = frame.point(ray.origin).as_vec3a();
-        let direction = ray.direction.as_vec3a();
+        Self::of_numbers(ray, [ray.origin, ray.direction], frame)
+    }
+
+    /// The same where the ray's origin and direction have been read already.
+    #[inline(always)]
+    pub(crate) fn of_numbers(ray: &Ray, [origin, direction]: [DVec3; 2], frame: &Frame) -> Self {
+        let origin = frame.point(origin).as_vec3a();
+        let direction = direction.as_vec3a();
         let length = direction.abs();
-        let is_near = origin.abs().cmple(Vec3A::splat(NEAR)).all()
-            && length.cmplt(Vec3A::splat(LONG)).all()
+        let is_near = (origin.abs().cmple(Vec3A::splat(NEAR)) & length.cmplt(Vec3A::splat(LONG)))
+            .all()
             && length.cmpgt(Vec3A::splat(LONG.recip())).any();
         // The usual case stays in registers.
         let (origin, direction, moved, per_unit, skipped) = if is_near {

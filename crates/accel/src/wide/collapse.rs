@@ -1,12 +1,11 @@
 //! From a binary tree with one primitive per leaf to nodes of eight children and leaves of up to eight
 //! triangles.
 
-use lancer_core::scene::{PrimitiveId, Scene, Shape};
+use lancer_core::scene::PrimitiveId;
 use rayon::prelude::*;
 use smallvec::SmallVec;
 
-use super::walk::U;
-use super::{Child, HEADER, Node, RECORD, UNIT, word_of};
+use super::{Child, Node, leaf};
 use crate::binary_tree::{BinaryTree, TreeNode};
 use crate::four_boxes::FrameBox;
 
@@ -153,11 +152,10 @@ pub(super) fn collapse(tree: &BinaryTree) -> Collapsed {
             if is_leaf(child) {
                 let Below { first, count, .. } = below[child];
                 let primitives = &tree.primitives[first as usize..][..count as usize];
-                let has_spheres = has_spheres(tree.scene, primitives);
+                let has_spheres = leaf::has_spheres(tree.scene, primitives);
                 nodes[index].children[lane] = Child::leaf(words, primitives.len(), has_spheres);
                 leaves.push((words, primitives));
-                let per_primitive = if has_spheres { 1 } else { 9 + RECORD };
-                words += (HEADER + per_primitive * primitives.len()).next_multiple_of(UNIT);
+                words += leaf::words(primitives.len(), has_spheres);
             } else {
                 pending.push((child, Some((index, lane))));
             }
@@ -179,7 +177,7 @@ fn fill(tree: &BinaryTree, leaves: &[(usize, &[PrimitiveId])], count: usize) -> 
     }
     parts.into_par_iter().for_each(|(part, words)| {
         for (offset, primitives) in part {
-            fill_leaf(tree, primitives, &mut words[offset - part[0].0..]);
+            leaf::fill(tree, primitives, &mut words[offset - part[0].0..]);
         }
     });
     words
@@ -206,39 +204,6 @@ fn open(
     let [left, right] = tree[node].children();
     open(tree, below, left, lefts, into);
     open(tree, below, right, most - lefts, into);
-}
-
-fn has_spheres(scene: &Scene, primitives: &[PrimitiveId]) -> bool {
-    primitives.iter().any(|&id| matches!(scene.shape(id), Shape::Sphere(_)))
-}
-
-/// Writes a leaf: see [`super::Wide`] for its words.
-fn fill_leaf(tree: &BinaryTree, primitives: &[PrimitiveId], words: &mut [f32]) {
-    let (header, words) = words.split_at_mut(HEADER);
-    if has_spheres(tree.scene, primitives) {
-        for (word, id) in words.iter_mut().zip(primitives) {
-            *word = word_of(id.0);
-        }
-        return;
-    }
-    let (mesh, frame) = (&tree.scene.mesh, &tree.frame);
-    let count = primitives.len();
-    let mut longest = super::SHORTEST;
-    let (rows, records) = words.split_at_mut(9 * count);
-    for (lane, (id, record)) in primitives.iter().zip(records.chunks_mut(RECORD)).enumerate() {
-        let [a, b, c] = mesh.corners(id.0 as usize);
-        // Edges are rounded in proportion to their own length, not to their place.
-        let parts = [frame.point(a), frame.vector(a - b), frame.vector(c - a)];
-        for (k, part) in parts.into_iter().flat_map(|part| part.to_array()).enumerate() {
-            rows[k * count + lane] = part as f32;
-            if k >= 3 {
-                longest = longest.max((part as f32).abs());
-            }
-        }
-        let [a, b, c] = mesh.triangles[id.0 as usize].vertices;
-        record.copy_from_slice(&[id.0, a, b, c].map(word_of));
-    }
-    header.copy_from_slice(&[longest, 64.0 * U * longest, longest * longest]);
 }
 
 impl Node {

@@ -12,6 +12,8 @@ pub(super) trait Lanes: Copy {
     type F: Copy;
     /// Four `f64`.
     type D: Real;
+    /// One `f64`, perhaps several times.
+    type One: Real;
 
     fn splat(self, x: f32) -> Self::F;
     fn load(self, x: &[f32; 8]) -> Self::F;
@@ -41,10 +43,27 @@ pub(super) trait Lanes: Copy {
     fn select(self, bits: u32, a: Self::F, b: Self::F) -> Self::F;
     fn four(self, x: [f64; 4]) -> Self::D;
     fn numbers(self, x: Self::D) -> [f64; 4];
+    fn one(self, x: f64) -> Self::One;
+    fn number(self, x: Self::One) -> f64;
     /// Eight `f64`, rounded.
     fn narrow(self, low: Self::D, high: Self::D) -> Self::F;
+    /// What `x` refers to, to be read where it is used: the compiler would broadcast a ray's numbers once and store
+    /// the lanes.
+    fn read_here<T>(self, x: &T) -> &T;
+    /// A number, read by itself and not together with its neighbours.
+    fn read_alone(self, x: &f64) -> f64;
     /// Brings what will be read soon into the caches.
     fn prefetch<T>(self, soon: &T);
+    /// Calls `f`, which is compiled for this way with everything inlined into it. Arguments go in registers:
+    /// through the memory of a closure they would be read in other pieces than written.
+    fn call<A, B, C, D, R>(
+        self,
+        a: A,
+        b: B,
+        c: C,
+        d: D,
+        f: impl FnOnce(Self, A, B, C, D) -> R,
+    ) -> R;
     /// Calls `f`, compiled apart: what it needs in registers does not displace what its caller has there.
     fn apart<R>(self, f: impl FnOnce(Self) -> R) -> R;
 }
@@ -116,6 +135,7 @@ fn bits(f: impl Fn(usize) -> bool) -> u32 {
 impl Lanes for Scalar {
     type F = [f32; 8];
     type D = DVec4;
+    type One = f64;
 
     #[inline(always)]
     fn splat(self, x: f32) -> [f32; 8] {
@@ -213,12 +233,44 @@ impl Lanes for Scalar {
     }
 
     #[inline(always)]
+    fn one(self, x: f64) -> f64 {
+        x
+    }
+
+    #[inline(always)]
+    fn number(self, x: f64) -> f64 {
+        x
+    }
+
+    #[inline(always)]
     fn narrow(self, low: DVec4, high: DVec4) -> [f32; 8] {
         each(|k| (if k < 4 { low[k] } else { high[k - 4] }) as f32)
     }
 
     #[inline(always)]
+    fn read_here<T>(self, x: &T) -> &T {
+        x
+    }
+
+    #[inline(always)]
+    fn read_alone(self, x: &f64) -> f64 {
+        *x
+    }
+
+    #[inline(always)]
     fn prefetch<T>(self, _: &T) {}
+
+    #[inline(never)]
+    fn call<A, B, C, D, R>(
+        self,
+        a: A,
+        b: B,
+        c: C,
+        d: D,
+        f: impl FnOnce(Self, A, B, C, D) -> R,
+    ) -> R {
+        f(self, a, b, c, d)
+    }
 
     #[inline(never)]
     fn apart<R>(self, f: impl FnOnce(Self) -> R) -> R {
@@ -233,6 +285,7 @@ pub(super) mod avx2 {
     //! of [`Avx2`] exists only where the processor was found to have both. Loads and stores go through
     //! references or slices whose lengths are checked.
 
+    use std::arch::asm;
     use std::arch::x86_64::*;
     use std::ops::{Add, BitAnd, Div, Mul, Neg, Not, Sub};
 
@@ -253,33 +306,6 @@ pub(super) mod avx2 {
                 && is_x86_feature_detected!("lzcnt")
                 && is_x86_feature_detected!("popcnt");
             found.then_some(Self(()))
-        }
-
-        /// Calls `f`, which is compiled for this processor with everything inlined into it. Arguments go in
-        /// registers: through the memory of a closure they would be read in other pieces than written.
-        #[inline(always)]
-        pub(in crate::wide) fn call<A, B, C, D, R>(
-            self,
-            a: A,
-            b: B,
-            c: C,
-            d: D,
-            f: impl FnOnce(Self, A, B, C, D) -> R,
-        ) -> R {
-            #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-            #[inline]
-            fn inner<A, B, C, D, R>(
-                lanes: Avx2,
-                a: A,
-                b: B,
-                c: C,
-                d: D,
-                f: impl FnOnce(Avx2, A, B, C, D) -> R,
-            ) -> R {
-                f(lanes, a, b, c, d)
-            }
-            // SAFETY: `self` says that the processor has these features.
-            unsafe { inner(self, a, b, c, d, f) }
         }
     }
 
@@ -411,6 +437,7 @@ pub(super) mod avx2 {
     impl Lanes for Avx2 {
         type F = __m256;
         type D = Four;
+        type One = Four;
 
         #[inline(always)]
         fn splat(self, x: f32) -> __m256 {
@@ -518,13 +545,64 @@ pub(super) mod avx2 {
         }
 
         #[inline(always)]
+        fn one(self, x: f64) -> Four {
+            Four(unsafe { _mm256_set1_pd(x) })
+        }
+
+        #[inline(always)]
+        fn number(self, x: Four) -> f64 {
+            unsafe { _mm256_cvtsd_f64(x.0) }
+        }
+
+        #[inline(always)]
         fn narrow(self, low: Four, high: Four) -> __m256 {
             unsafe { _mm256_set_m128(_mm256_cvtpd_ps(high.0), _mm256_cvtpd_ps(low.0)) }
         }
 
         #[inline(always)]
+        fn read_here<T>(self, x: &T) -> &T {
+            let mut place = std::ptr::from_ref(x);
+            // SAFETY: no instruction changes the place; the compiler does not know.
+            unsafe {
+                asm!("/* {0} */", inout(reg) place, options(readonly, nostack, preserves_flags));
+                &*place
+            }
+        }
+
+        #[inline(always)]
+        fn read_alone(self, x: &f64) -> f64 {
+            // SAFETY: a reference can be read through.
+            unsafe { std::ptr::from_ref(x).read_volatile() }
+        }
+
+        #[inline(always)]
         fn prefetch<T>(self, soon: &T) {
             unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(soon).cast()) }
+        }
+
+        #[inline(always)]
+        fn call<A, B, C, D, R>(
+            self,
+            a: A,
+            b: B,
+            c: C,
+            d: D,
+            f: impl FnOnce(Self, A, B, C, D) -> R,
+        ) -> R {
+            #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+            #[inline]
+            fn inner<A, B, C, D, R>(
+                lanes: Avx2,
+                a: A,
+                b: B,
+                c: C,
+                d: D,
+                f: impl FnOnce(Avx2, A, B, C, D) -> R,
+            ) -> R {
+                f(lanes, a, b, c, d)
+            }
+            // SAFETY: `self` says that the processor has these features.
+            unsafe { inner(self, a, b, c, d, f) }
         }
 
         #[inline(always)]

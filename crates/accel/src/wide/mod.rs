@@ -1,8 +1,11 @@
 //! « Accélération matérielle », on the processor: eight boxes, then eight triangles at a time.
 
 mod collapse;
+mod decide;
 mod few;
+mod filter;
 mod lanes;
+mod leaf;
 mod packet;
 mod walk;
 
@@ -21,6 +24,7 @@ use few::{FEW, Few};
 #[cfg(target_arch = "x86_64")]
 use lanes::avx2::Avx2;
 use lanes::{Lanes, Scalar};
+use leaf::{HEADER, RECORD, UNIT, integer_of};
 
 /// A hierarchy of eight children per node: culled eight at a time in `f32`, answered in `f64`.
 ///
@@ -39,11 +43,7 @@ use lanes::{Lanes, Scalar};
 /// ```text
 /// node, 256 bytes     lowest x [8]  highest x [8]  lowest y [8]  …  highest z [8]   f32, rounded outwards
 ///                     child [8]     a node, or a leaf and its number of primitives
-/// leaf, words of 4    longest edge component s, 64 u s, s²
-///                     a.x [n] a.y [n] a.z [n]   one corner
-///                     e.x [n] e.y [n] e.z [n]   from the second to it
-///                     f.x [n] f.y [n] f.z [n]   from it to the third
-///                     (id, corners [3]) [n]     what f64 will read; 54 bytes a triangle at n = 8
+/// leaf                its triangles, row by row: see `leaf.rs`
 /// ```
 ///
 /// All coordinates are those of the scene's own frame, [−1, 1]³: `f32` keeps its digits wherever the scene
@@ -76,32 +76,6 @@ pub struct Wide<'s> {
     few: Option<Few>,
     kernel: Kernel,
 }
-
-/// Edges count as this long at least.
-const SHORTEST: f32 = 1.0 / (1 << 20) as f32;
-/// Leaves begin at multiples of this many words.
-const UNIT: usize = 4;
-/// Words of a leaf before those of its triangles.
-const HEADER: usize = 3;
-/// Words of a triangle's id and corners.
-const RECORD: usize = 4;
-
-/// An integer among the words of a leaf. Where it is read as a number, for the sake of its neighbours, it is
-/// never a denormal one: computing with those is slow.
-///
-/// # Panics
-/// If it is 2³⁰ or more.
-fn word_of(integer: u32) -> f32 {
-    assert!(integer < TAG, "`wide` takes no more than 2³⁰ triangles and corners");
-    f32::from_bits(TAG | integer)
-}
-
-#[inline(always)]
-fn integer_of(word: f32) -> u32 {
-    word.to_bits() & (TAG - 1)
-}
-
-const TAG: u32 = 1 << 30;
 
 /// What computes with eight lanes.
 #[derive(Clone, Copy, Debug)]
@@ -282,20 +256,6 @@ impl<'s> Wide<'s> {
         [positions[a], positions[b], positions[c]]
     }
 
-    /// Lets `f64` decide on a triangle.
-    #[inline(always)]
-    fn test(&self, probe: &mut Probe, record: u32) -> bool {
-        let (id, corners) = self.triangle(record);
-        probe.test_triangle(id, self.corners(corners))
-    }
-
-    /// The same for one that is met in any case.
-    #[inline(always)]
-    fn solve(&self, probe: &mut Probe, record: u32) -> bool {
-        let (id, corners) = self.triangle(record);
-        probe.solve_triangle(id, self.corners(corners))
-    }
-
     /// The primitives of a leaf.
     #[inline(always)]
     fn primitives(&self, leaf: Child) -> impl Iterator<Item = PrimitiveId> {
@@ -335,7 +295,11 @@ impl<'s> Wide<'s> {
                 #[inline(always)]
                 |lanes, wide, ray, range, observer| wide.closest_by(lanes, ray, range, observer),
             ),
-            Kernel::Scalar(lanes) => self.closest_by(lanes, ray, range, observer),
+            Kernel::Scalar(scalar) => {
+                scalar.call(self, ray, range, observer, |lanes, wide, ray, range, observer| {
+                    wide.closest_by(lanes, ray, range, observer)
+                })
+            }
         }
     }
 
@@ -356,7 +320,11 @@ impl<'s> Wide<'s> {
                 #[inline(always)]
                 |lanes, wide, ray, range, observer| wide.any_by(lanes, ray, range, observer),
             ),
-            Kernel::Scalar(lanes) => self.any_by(lanes, ray, range, observer),
+            Kernel::Scalar(scalar) => {
+                scalar.call(self, ray, range, observer, |lanes, wide, ray, range, observer| {
+                    wide.any_by(lanes, ray, range, observer)
+                })
+            }
         }
     }
 
@@ -412,11 +380,7 @@ impl<'s> Wide<'s> {
     ) {
         match &self.few {
             Some(few) => few.occluded(lanes, rays, range, occluded),
-            None => {
-                for (ray, occluded) in rays.iter().zip(occluded) {
-                    *occluded = walk::any(lanes, self, ray, range, &mut ()).is_some();
-                }
-            }
+            None => walk::any_each(lanes, self, rays, range, occluded),
         }
     }
 }

@@ -4,8 +4,8 @@ use glam::DVec3;
 use lancer_core::geometry::{Axis, Ray, Real};
 
 use super::super::collapse::WIDTH;
+use super::super::filter::{Bounds, U};
 use super::super::lanes::{Lanes, least, most};
-use super::super::walk::{Bounds, U};
 use super::{NONE, Packet, Side, Spread, VECTORS};
 
 /// The farthest origin, in units of the scene's frame, and the steepest slope.

@@ -5,6 +5,7 @@ use lancer_core::geometry::{Axis, Real, Shear, solve_triangle};
 use lancer_core::intersector::{Hit, Probe};
 
 use super::super::collapse::WIDTH;
+use super::super::decide::Decision;
 use super::super::lanes::{Lanes, gather};
 use super::{NONE, Packet, RAYS};
 
@@ -19,14 +20,14 @@ impl<L: Lanes> Packet<'_, '_, L> {
             let best = self.best[k / WIDTH][k % WIDTH];
             *hit = None;
             if self.doubtful >> k & 1 != 0 {
-                let mut probe = Probe::new(self.wide.scene, ray, self.range);
+                let mut decision = Decision::new(self.lanes, self.wide, ray, self.range, None);
                 if best != NONE {
-                    self.wide.solve(&mut probe, best);
+                    decision.test(best, true);
                 }
                 while let Some(doubt) = doubts.next_if(|&&doubt| doubt >> 32 == k as u64) {
-                    self.wide.test(&mut probe, *doubt as u32);
+                    decision.test(*doubt as u32, false);
                 }
-                *hit = probe.best();
+                *hit = decision.best();
             } else if best != NONE {
                 certain[count] = k;
                 count += 1;
@@ -54,9 +55,9 @@ impl<L: Lanes> Packet<'_, '_, L> {
         let axis = Axis::longest(rays[i].direction);
         if [j, k, m].iter().any(|&k| Axis::longest(rays[k].direction) != axis) {
             for k in [i, j, k, m] {
-                let mut probe = Probe::new(wide.scene, &rays[k], self.range);
-                wide.solve(&mut probe, best(k));
-                hits[k] = probe.best();
+                let mut decision = Decision::new(l, wide, &rays[k], self.range, None);
+                decision.test(best(k), true);
+                hits[k] = decision.best();
             }
             return;
         }

@@ -3,14 +3,18 @@
 mod aim;
 mod answer;
 
+use std::ops::ControlFlow;
+
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::intersector::Hit;
 use smallvec::SmallVec;
 
 use super::collapse::WIDTH;
+use super::filter::{Bounds, Filtered, TriangleBounds};
 use super::lanes::{Lanes, Vectors, cross, dot, most, splat3, sub3};
-use super::walk::{self, Bounds, Filtered, MOST_PENDING, Stack, TriangleBounds, child, near};
-use super::{Child, HEADER, Node, Wide};
+use super::leaf::HEADER;
+use super::walk::{self, Walker};
+use super::{Child, Node, Wide};
 
 /// Rays of a packet at most: 8 × 8 pixels.
 const RAYS: usize = 64;
@@ -44,9 +48,7 @@ pub(super) fn closest<L: Lanes>(
         } else {
             pause = PAUSE;
         }
-        for (ray, hit) in rays.iter().zip(hits) {
-            *hit = walk::closest(lanes, wide, ray, range, &mut ());
-        }
+        walk::closest_each(lanes, wide, rays, range, hits);
     }
 }
 
@@ -150,7 +152,11 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
         let width = 2.0 * f64::from(self.spread.half[0].max(self.spread.half[1]));
         for k in [0, self.rays.len() / 4 * 3] {
             let ray = &self.rays[k];
-            let hit = walk::closest(self.lanes, self.wide, ray, self.range, &mut ());
+            let (wide, range) = (self.wide, self.range);
+            let hit = self.lanes.apart(
+                #[inline(always)]
+                move |lanes| walk::closest(lanes, wide, ray, range, &mut ()),
+            );
             let Some(hit) = hit else { continue };
             let [a, b, c] = self.wide.scene.mesh.corners(hit.primitive.0 as usize);
             let size = (b - a).abs().max((c - a).abs()).max_element();
@@ -166,126 +172,8 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
     /// too much work, or too many hits cannot be told apart.
     #[inline(always)]
     pub(super) fn walk(&mut self) -> bool {
-        let mut stack = Stack::<MOST_PENDING>::new();
-        let mut next = Child::node(0);
-        loop {
-            if self.spent > MOST_WORK {
-                return false;
-            }
-            if next.is_leaf() {
-                if !self.visit_leaf(next) {
-                    return false;
-                }
-            } else {
-                self.spent += 1;
-                let node = &self.wide.nodes[next.0 as usize];
-                let (near, met) = self.enter(node);
-                if met != 0 {
-                    if met & (met - 1) == 0 {
-                        next = node.children[met.trailing_zeros() as usize % WIDTH];
-                    } else {
-                        next = stack.push_but_nearest(met, &self.lanes.store(near), &node.children);
-                    }
-                    continue;
-                }
-            }
-            next = loop {
-                let Some(entry) = stack.pop() else { return true };
-                if near(entry) <= self.farthest {
-                    break child(entry);
-                }
-            };
-        }
-    }
-
-    /// The depths of eight boxes, and which of them the packet may meet, a bit per lane.
-    #[inline(always)]
-    fn enter(&self, node: &Node) -> (L::F, u32) {
-        let l = self.lanes;
-        let mut beside = l.splat(f32::NEG_INFINITY);
-        let [x_rows, y_rows, z_rows] = self.axes.map(|axis| &node.planes[axis % 3]);
-        for (side, rows) in self.sides.iter().zip([x_rows, x_rows, y_rows, y_rows]) {
-            let x = l.load(&rows[usize::from(side.turned)]);
-            let z = l.load(&z_rows[usize::from(side.factor < 0.0)]);
-            let sum = l.mul_add(z, l.splat(side.factor), l.splat(side.offset));
-            beside = l.max(if side.turned { l.sub(sum, x) } else { l.add(sum, x) }, beside);
-        }
-        let [sign, near, far] = self.depth;
-        let nearest = usize::from(sign < 0.0);
-        let first = l.mul_add(l.load(&z_rows[nearest]), l.splat(sign), l.splat(near));
-        let last = l.mul_add(l.load(&z_rows[1 - nearest]), l.splat(sign), l.splat(far));
-        let first = l.max(first, l.splat(0.0));
-        let zero = l.splat(0.0);
-        let met = l.at_least(zero, beside)
-            & l.at_least(last, zero)
-            & l.at_least(l.splat(self.farthest), first);
-        (first, met)
-    }
-
-    #[inline(always)]
-    fn visit_leaf(&mut self, leaf: Child) -> bool {
-        self.spent += 2;
-        let l = self.lanes;
-        let count = leaf.count();
-        let words = self.wide.words(leaf);
-        let rows = l.rows::<9>(&words[HEADER..], count);
-        let [p, q, w] = self.axes;
-        let a = [rows[p], rows[q], rows[w]];
-        let (e, f) =
-            ([rows[3 + p], rows[3 + q], rows[3 + w]], [rows[6 + p], rows[6 + q], rows[6 + w]]);
-        let c = sub3(l, a, splat3(l, [self.origin[p], self.origin[q], self.origin[w]]));
-        let normal = cross(l, f, e);
-        let t = dot(l, normal, c);
-        let u = self.turned(cross(l, f, c));
-        let v = self.turned(cross(l, e, c));
-        let det = self.turned(normal);
-
-        let noise = self.bounds.noise(l, words, c);
-        let bounds = self.bounds.of(l, words, noise);
-        let spread = Spread {
-            middle: [l.splat(self.spread.middle[0]), l.splat(self.spread.middle[1])],
-            half: [l.splat(self.spread.half[0]), l.splat(self.spread.half[1])],
-        };
-        let mut met = spread.may_meet(l, [u, v, det], bounds) & ((1 << count) - 1);
-        if met == 0 {
-            return true;
-        }
-        let stored = [u[0], u[1], u[2], v[0], v[1], v[2], det[0], det[1], det[2], t, noise];
-        let mut rows = [[0.0; WIDTH]; 11];
-        for (row, x) in rows.iter_mut().zip(stored) {
-            *row = l.store(x);
-        }
-        let mut found = false;
-        while met != 0 {
-            let lane = met.trailing_zeros() as usize % WIDTH;
-            met &= met - 1;
-            let triangle = Triangle {
-                u: [rows[0][lane], rows[1][lane], rows[2][lane]],
-                v: [rows[3][lane], rows[4][lane], rows[5][lane]],
-                det: [rows[6][lane], rows[7][lane], rows[8][lane]],
-                t: rows[9][lane],
-                bounds: self.bounds.of(l, words, l.splat(rows[10][lane])),
-                record: Wide::record(leaf, lane),
-            };
-            let mut vectors = self.vectors_that_may_meet(&triangle);
-            while vectors != 0 {
-                let vector = vectors.trailing_zeros() as usize % VECTORS;
-                vectors &= vectors - 1;
-                self.spent += 1;
-                if self.doubts.len() + WIDTH > DOUBTS {
-                    return false;
-                }
-                found |= self.test(&triangle, vector);
-            }
-        }
-        if found {
-            let mut farthest = l.splat(0.0);
-            for max in &self.max {
-                farthest = l.max(l.load(max), farthest);
-            }
-            self.farthest = most(l, farthest);
-        }
-        true
+        let (lanes, wide) = (self.lanes, self.wide);
+        walk::walk(lanes, wide, self, &mut ()).is_continue()
     }
 
     /// What multiplies a direction's third component, σ, turned once for all.
@@ -347,6 +235,113 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
             self.doubts.push(((vector * WIDTH + lane) as u64) << 32 | u64::from(triangle.record));
         }
         shorter != 0
+    }
+}
+
+impl<L: Lanes> Walker<L> for Packet<'_, '_, L> {
+    const SORTS: bool = true;
+    type Boxes = ();
+
+    #[inline(always)]
+    fn boxes(&self) {}
+
+    /// The depths of eight boxes, and which of them the packet may meet, a bit per lane.
+    #[inline(always)]
+    fn enter(&mut self, (): &(), node: &Node) -> (L::F, u32) {
+        self.spent += 1;
+        let l = self.lanes;
+        let mut beside = l.splat(f32::NEG_INFINITY);
+        let [x_rows, y_rows, z_rows] = self.axes.map(|axis| &node.planes[axis % 3]);
+        for (side, rows) in self.sides.iter().zip([x_rows, x_rows, y_rows, y_rows]) {
+            let x = l.load(&rows[usize::from(side.turned)]);
+            let z = l.load(&z_rows[usize::from(side.factor < 0.0)]);
+            let sum = l.mul_add(z, l.splat(side.factor), l.splat(side.offset));
+            beside = l.max(if side.turned { l.sub(sum, x) } else { l.add(sum, x) }, beside);
+        }
+        let [sign, near, far] = self.depth;
+        let nearest = usize::from(sign < 0.0);
+        let first = l.mul_add(l.load(&z_rows[nearest]), l.splat(sign), l.splat(near));
+        let last = l.mul_add(l.load(&z_rows[1 - nearest]), l.splat(sign), l.splat(far));
+        let first = l.max(first, l.splat(0.0));
+        let zero = l.splat(0.0);
+        let met = l.at_least(zero, beside)
+            & l.at_least(last, zero)
+            & l.at_least(l.splat(self.farthest), first);
+        (first, met)
+    }
+
+    #[inline(always)]
+    fn max(&self) -> f32 {
+        self.farthest
+    }
+
+    #[inline(always)]
+    fn visit(&mut self, leaf: Child) -> ControlFlow<()> {
+        self.spent += 2;
+        if self.spent > MOST_WORK {
+            return ControlFlow::Break(());
+        }
+        let l = self.lanes;
+        let count = leaf.count();
+        let words = self.wide.words(leaf);
+        let rows = l.rows::<9>(&words[HEADER..], count);
+        let [p, q, w] = self.axes;
+        let a = [rows[p], rows[q], rows[w]];
+        let (e, f) =
+            ([rows[3 + p], rows[3 + q], rows[3 + w]], [rows[6 + p], rows[6 + q], rows[6 + w]]);
+        let c = sub3(l, a, splat3(l, [self.origin[p], self.origin[q], self.origin[w]]));
+        let normal = cross(l, f, e);
+        let t = dot(l, normal, c);
+        let u = self.turned(cross(l, f, c));
+        let v = self.turned(cross(l, e, c));
+        let det = self.turned(normal);
+
+        let noise = self.bounds.noise(l, words, c);
+        let bounds = self.bounds.of(l, words, noise);
+        let spread = Spread {
+            middle: [l.splat(self.spread.middle[0]), l.splat(self.spread.middle[1])],
+            half: [l.splat(self.spread.half[0]), l.splat(self.spread.half[1])],
+        };
+        let mut met = spread.may_meet(l, [u, v, det], bounds) & ((1 << count) - 1);
+        if met == 0 {
+            return ControlFlow::Continue(());
+        }
+        let stored = [u[0], u[1], u[2], v[0], v[1], v[2], det[0], det[1], det[2], t, noise];
+        let mut rows = [[0.0; WIDTH]; 11];
+        for (row, x) in rows.iter_mut().zip(stored) {
+            *row = l.store(x);
+        }
+        let mut found = false;
+        while met != 0 {
+            let lane = met.trailing_zeros() as usize % WIDTH;
+            met &= met - 1;
+            let triangle = Triangle {
+                u: [rows[0][lane], rows[1][lane], rows[2][lane]],
+                v: [rows[3][lane], rows[4][lane], rows[5][lane]],
+                det: [rows[6][lane], rows[7][lane], rows[8][lane]],
+                t: rows[9][lane],
+                bounds: self.bounds.of(l, words, l.splat(rows[10][lane])),
+                record: Wide::record(leaf, lane),
+            };
+            let mut vectors = self.vectors_that_may_meet(&triangle);
+            while vectors != 0 {
+                let vector = vectors.trailing_zeros() as usize % VECTORS;
+                vectors &= vectors - 1;
+                self.spent += 1;
+                if self.doubts.len() + WIDTH > DOUBTS {
+                    return ControlFlow::Break(());
+                }
+                found |= self.test(&triangle, vector);
+            }
+        }
+        if found {
+            let mut farthest = l.splat(0.0);
+            for max in &self.max {
+                farthest = l.max(l.load(max), farthest);
+            }
+            self.farthest = most(l, farthest);
+        }
+        ControlFlow::Continue(())
     }
 }
 
