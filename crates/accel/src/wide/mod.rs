@@ -7,6 +7,7 @@ mod filter;
 mod lanes;
 mod leaf;
 mod packet;
+mod spheres;
 mod walk;
 
 use glam::DVec3;

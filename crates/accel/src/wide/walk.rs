@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 use lancer_core::geometry::{Interval, Ray};
-use lancer_core::intersector::{Hit, Observer, Probe};
+use lancer_core::intersector::{Hit, Observer};
 use lancer_core::scene::PrimitiveId;
 
 use super::collapse::WIDTH;
@@ -13,7 +13,7 @@ use super::decide::Decision;
 use super::filter::{Bounds, Filtered, U};
 use super::lanes::{Lanes, Vectors, cross, dot, splat3, sub3};
 use super::leaf::HEADER;
-use super::{Child, Node, Wide};
+use super::{Child, Node, Wide, spheres};
 use crate::bvh::MAX_DEPTH;
 use crate::four_boxes::FourSlabs;
 use crate::pending::Lanes as Bits;
@@ -360,8 +360,8 @@ impl<L: Lanes> Walker<L> for Closest<'_, L> {
         self.in_frame = self.lanes.read_here(self.in_frame);
         let (wide, lanes, ray) = (self.wide, self.lanes, self.in_frame);
         if leaf.has_spheres() {
-            let t = test_spheres(wide, leaf, self.ray, self.range, self.early);
-            self.max = self.max.min(ray.slabs.parameter(t));
+            let end = spheres::test(lanes, wide, leaf, self.ray, self.range, self.early);
+            self.max = self.max.min(ray.slabs.parameter(end));
             return ControlFlow::Continue(());
         }
         let filtered = ray.filter(lanes, wide.words(leaf), leaf.count(), self.max);
@@ -406,26 +406,6 @@ impl<L: Lanes> Closest<'_, L> {
         );
         self.max = self.max.min(slabs.parameter(end));
     }
-}
-
-/// Tests the spheres of a leaf. Returns where the closest hit is now.
-#[inline(never)]
-fn test_spheres(
-    wide: &Wide,
-    leaf: Child,
-    ray: &Ray,
-    range: Interval,
-    early: &mut Option<Hit>,
-) -> f64 {
-    let mut probe = Probe::new(wide.scene, ray, range);
-    if let Some(hit) = *early {
-        probe.keep(hit);
-    }
-    for sphere in wide.primitives(leaf) {
-        probe.test(sphere);
-    }
-    *early = probe.best();
-    probe.range().max
 }
 
 /// Lets `f64` decide on candidates up to `max`. What came last is nearest more often than not.
@@ -559,7 +539,7 @@ impl<L: Lanes> Any<'_, L> {
         let (wide, ray, range) = (self.wide, self.ray, self.range);
         if leaf.has_spheres() {
             let mut early = None;
-            test_spheres(wide, leaf, ray, range, &mut early);
+            spheres::test(self.lanes, wide, leaf, ray, range, &mut early);
             return early.map(|hit| hit.primitive);
         }
         self.lanes.apart(

@@ -25,7 +25,7 @@ impl<'p, L: Lanes> Packet<'p, '_, L> {
         let axes = [(last + 1) % 3, (last + 2) % 3, last];
         let sign = direction[last].signum();
         let is_near = origin.abs().max_element() <= FARTHEST && frame.moved == 0.0;
-        if self.wide.nodes.is_empty() || !self.wide.scene.spheres.is_empty() || !is_near {
+        if self.wide.nodes.is_empty() || !is_near {
             return false;
         }
 

@@ -7,6 +7,7 @@ use std::ops::ControlFlow;
 
 use lancer_core::geometry::{Interval, Ray};
 use lancer_core::intersector::Hit;
+use lancer_core::scene::Shape;
 use smallvec::SmallVec;
 
 use super::collapse::WIDTH;
@@ -158,7 +159,9 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
                 move |lanes| walk::closest(lanes, wide, ray, range, &mut ()),
             );
             let Some(hit) = hit else { continue };
-            let [a, b, c] = self.wide.scene.mesh.corners(hit.primitive.0 as usize);
+            let scene = self.wide.scene;
+            let Shape::Triangle(index) = scene.shape(hit.primitive) else { return false };
+            let [a, b, c] = scene.mesh.corners(index);
             let size = (b - a).abs().max((c - a).abs()).max_element();
             let depth = hit.t * ray.direction.to_array()[self.axes[2]].abs();
             if size < WIDEST * width * depth {
@@ -278,7 +281,8 @@ impl<L: Lanes> Walker<L> for Packet<'_, '_, L> {
     #[inline(always)]
     fn visit(&mut self, leaf: Child) -> ControlFlow<()> {
         self.spent += 2;
-        if self.spent > MOST_WORK {
+        // Spheres are tested ray by ray.
+        if self.spent > MOST_WORK || leaf.has_spheres() {
             return ControlFlow::Break(());
         }
         let l = self.lanes;
