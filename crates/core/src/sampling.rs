@@ -95,17 +95,22 @@ impl PixelSampling {
     ) -> impl Iterator<Item = Sample> {
         let corner = DVec2::new(f64::from(x), f64::from(y));
         let key = pixel_key(self.seed, x, y);
-        let mut random = Uniform::with_key(key);
-        if numbers.start > 0 {
-            random.skip(2 * u64::from(numbers.start));
-        }
-        let cells = if self.samples > 1 { grid(self.samples) } else { [1, 1] };
+        let cells = match self.pattern {
+            Pattern::Regular | Pattern::Jittered => grid(self.samples),
+            Pattern::Owen => [1, 1],
+        };
         numbers.map(move |index| {
-            let cell = DVec2::new(f64::from(index % cells[0]), f64::from(index / cells[0]));
-            let cells = DVec2::new(f64::from(cells[0]), f64::from(cells[1]));
+            let in_cell = |place: DVec2| {
+                let cell = DVec2::new(f64::from(index % cells[0]), f64::from(index / cells[0]));
+                (cell + place) / DVec2::new(f64::from(cells[0]), f64::from(cells[1]))
+            };
             let in_pixel = match self.pattern {
-                Pattern::Regular => (cell + 0.5) / cells,
-                Pattern::Jittered => (cell + DVec2::new(random.number(), random.number())) / cells,
+                Pattern::Regular => in_cell(DVec2::splat(0.5)),
+                Pattern::Jittered => {
+                    let mut random = Uniform::with_key(key);
+                    random.skip(2 * u64::from(index));
+                    in_cell(DVec2::new(random.number(), random.number()))
+                }
                 Pattern::Owen => owen(index, key),
             };
             Sample { film: corner + in_pixel, pixel: [x, y], index, key }
@@ -114,7 +119,11 @@ impl PixelSampling {
 }
 
 /// The columns and rows of the most nearly square grid with `samples` cells.
+#[inline]
 fn grid(samples: u32) -> [u32; 2] {
+    if samples == 1 {
+        return [1, 1];
+    }
     let rows = (1..=samples.isqrt()).rev().find(|rows| samples.is_multiple_of(*rows)).unwrap_or(1);
     [samples / rows, rows]
 }

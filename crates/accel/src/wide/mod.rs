@@ -64,6 +64,8 @@ use leaf::{HEADER, RECORD, UNIT, integer_of};
 ///   few leaves, and should not pay for them in registers. A certain hit is solved for t without the checks
 ///   that it is known to pass.
 /// - Rays of one origin are walked as a packet, [`Intersector::closest_hits`]; what that gains is plate 4.9's.
+/// - Up to 64 primitives have no tree: `f64` asks them four at a time, or four rays at a time, by the formulas of
+///   one, which stand once for any number of lanes ([`lancer_core::geometry::Real`]). So are the spheres of a leaf.
 ///
 #[doc = include_str!("bounds.md")]
 pub struct Wide<'s> {
