@@ -376,3 +376,106 @@ impl<L: Lanes> Everywhere<L> {
 fn difference<T: Real>(a: [T; 3], b: [T; 3]) -> [T; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
+
+#[cfg(test)]
+mod tests {
+    use lancer_core::generate::{cube, icosphere};
+    use lancer_core::geometry::Sphere;
+    use lancer_core::intersector::{Intersector, LinearScan};
+    use lancer_core::scene::{MaterialId, Scene, SphereObject};
+    use rand_pcg::Pcg64;
+    use rand_pcg::rand_core::Rng;
+
+    use super::super::Wide;
+    use super::super::tests::kernels;
+    use super::*;
+
+    /// Triangles and spheres of which some are twice in one place, `offset` away.
+    fn scene(triangles: bool, spheres: usize, offset: DVec3) -> Scene {
+        let mut mesh = if triangles { cube() } else { lancer_core::scene::Mesh::default() };
+        if triangles {
+            mesh.append(&cube(), glam::DAffine3::IDENTITY, 0);
+            mesh.append(&icosphere(0), glam::DAffine3::from_scale(DVec3::splat(0.4)), 0);
+        }
+        for position in &mut mesh.positions {
+            *position += offset;
+        }
+        let mut scene = Scene::of_mesh(mesh);
+        for k in 0..spheres {
+            let at = (k / 2) as f64;
+            let center = offset + DVec3::new(at.sin(), at.cos(), 0.3 * at - 1.0);
+            let shape = Sphere { center, radius: 0.3 + 0.1 * at };
+            scene.spheres.push(SphereObject { shape, material: MaterialId(0) });
+        }
+        scene
+    }
+
+    /// The answers of brute force to rays at corners, edges and rims, in batches and alone, of few primitives and of
+    /// many spheres in a tree.
+    #[test]
+    fn few_primitives_and_spheres_are_met_as_by_brute_force() {
+        let mut random = Pcg64::new(7, 4);
+        let mut number = move || f64::from(random.next_u32()) / f64::from(1 << 31) - 1.0;
+        let (mut hits, mut ties) = (0, 0);
+        for offset in [DVec3::ZERO, DVec3::new(148_376.0, 1234.0, -223_423.0)] {
+            for (triangles, spheres) in [(true, 0), (false, 3), (false, 6), (true, 8), (false, 90)]
+            {
+                let scene = scene(triangles, spheres, offset);
+                let count = scene.primitives().len();
+                let oracle = LinearScan::new(&scene);
+                let rays: Vec<Ray> = (0..1200)
+                    .map(|k: usize| {
+                        let id = PrimitiveId((k * 7919 % count) as u32);
+                        let mut vector = || DVec3::new(number(), number(), number());
+                        let target = match scene.shape(id) {
+                            Shape::Triangle(index) => {
+                                let [a, b, c] = scene.mesh.corners(index);
+                                [a, b, 0.5 * (b + c), (a + b + c) / 3.0][k % 4]
+                            }
+                            Shape::Sphere(index) => {
+                                let Sphere { center, radius } = scene.spheres[index].shape;
+                                center
+                                    + radius * [1.0, 1.0 - 1e-15, 0.5][k % 3] * vector().normalize()
+                            }
+                        };
+                        let origin = match k / 4 % 4 {
+                            // Neighbours start in one point.
+                            0 => offset + DVec3::new(0.1, 0.2, 5.0),
+                            1 => target + [DVec3::X, -DVec3::Y, DVec3::Z][k % 3],
+                            2 => offset + 0.2 * vector(),
+                            _ => offset + 3.0 * vector(),
+                        };
+                        Ray::new(origin, target - origin)
+                    })
+                    .collect();
+                for range in
+                    [Interval::POSITIVE, Interval::up_to(1.0), Interval { min: 0.9, max: 1.5 }]
+                {
+                    let wanted: Vec<_> =
+                        rays.iter().map(|ray| oracle.closest_hit(ray, range)).collect();
+                    hits += wanted.iter().flatten().count();
+                    ties += wanted.iter().flatten().filter(|hit| hit.primitive.0 % 2 == 0).count();
+                    for kernel in kernels() {
+                        let wide = Wide::with_kernel((&scene).into(), kernel);
+                        assert_eq!(wide.few.is_some(), count <= FEW);
+                        let mut got = vec![None; rays.len()];
+                        wide.closest_hits(&rays, range, &mut got);
+                        assert_eq!(got, wanted, "{kernel:?} {range:?} {spheres}");
+                        let mut occluded = vec![false; rays.len()];
+                        wide.occluded_all(&rays, range, &mut occluded);
+                        for ((ray, wanted), occluded) in rays.iter().zip(&wanted).zip(occluded) {
+                            assert_eq!(
+                                wide.closest_hit(ray, range),
+                                *wanted,
+                                "{kernel:?} {range:?}"
+                            );
+                            assert_eq!(occluded, wanted.is_some(), "{kernel:?} {range:?} {ray:?}");
+                            assert_eq!(wide.occluded(ray, range), occluded);
+                        }
+                    }
+                }
+            }
+        }
+        assert!(hits > 20_000 && ties > 5_000, "{hits} {ties}");
+    }
+}

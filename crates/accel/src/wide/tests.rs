@@ -11,7 +11,7 @@ use super::*;
 use crate::four_boxes::FourSlabs;
 use crate::hard_sets::{hard_sets, triangles};
 
-fn kernels() -> Vec<Kernel> {
+pub(super) fn kernels() -> Vec<Kernel> {
     let mut kernels = vec![Kernel::Scalar(Scalar)];
     if Wide::has_vectors() {
         kernels.push(Kernel::best());
