@@ -1,9 +1,11 @@
 //! « Hiérarchie de volumes englobants »: the binary tree of our own.
 
+mod cuts;
 mod grow;
+mod item;
+mod spatial;
 
 pub(crate) use grow::MAX_DEPTH;
-pub use grow::split_at_median;
 
 use glam::Vec3A;
 use lancer_core::geometry::{ConvexVolume, Ray};
@@ -11,10 +13,12 @@ use lancer_core::intersector::{BeamIndex, BeamTraversal, Hit, Observer, Query, T
 use lancer_core::scene::{PrimitiveId, Subset};
 use rayon::prelude::*;
 
-use crate::binary_tree::{BinaryTree, TreeStatistics};
+use crate::binary_tree::{BinaryTree, TreeNode, TreeStatistics};
 use crate::four_boxes::{Frame, FrameBox};
 use crate::four_wide::FourWide;
 use grow::{MAX_LEAF, Rule};
+use item::Item;
+use spatial::Splitter;
 
 /// How a node's primitives are divided between its two children.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -110,41 +114,98 @@ impl BeamTraversal for Bvh<'_> {
 impl<'s> BinaryTree<'s> {
     /// Builds the tree. It is the same for any number of threads.
     pub fn build(primitives: impl Into<Subset<'s>>, split: Split) -> Self {
-        Self::grown(&primitives.into(), Rule { split, max_leaf: MAX_LEAF })
+        let rule = Rule { split, max_leaf: MAX_LEAF, splitter: None };
+        let mut tree = Self::grown(&primitives.into(), 0, |_, _| rule);
+        tree.close_gaps();
+        tree
     }
 
     /// The tree by the surface area heuristic down to single primitives, to be collapsed.
     pub(crate) fn of_single_primitives(primitives: &Subset<'s>) -> Self {
-        Self::grown(primitives, Rule { split: Split::Sah, max_leaf: 1 })
+        let rule = Rule { split: Split::Sah, max_leaf: 1, splitter: None };
+        Self::grown(primitives, 0, |_, _| rule)
     }
 
-    fn grown(primitives: &Subset<'s>, rule: Rule) -> Self {
+    /// The same with primitives that are split where their boxes overlap, so that some are in several leaves, each
+    /// with a part of their boxes. There are gaps between nodes and between primitives.
+    pub(crate) fn of_split_primitives(primitives: &Subset<'s>) -> Self {
+        let count = primitives.len();
+        Self::grown(primitives, Self::most_parts(count) - count, |frame, root| Rule {
+            split: Split::Sah,
+            max_leaf: 1,
+            splitter: Some(Splitter::new(primitives.scene(), frame, root)),
+        })
+    }
+
+    /// How many parts so many primitives are split into at most.
+    pub(crate) fn most_parts(primitives: usize) -> usize {
+        primitives + primitives * MORE_PARTS / 100
+    }
+
+    fn grown(
+        primitives: &Subset<'s>,
+        more: usize,
+        rule: impl FnOnce(Frame, FrameBox) -> Rule<'s>,
+    ) -> Self {
         let scene = primitives.scene();
         let frame = Frame::of(primitives.bounds());
         let item = |place| {
             let primitive = primitives.get(place);
-            Item { bounds: frame.outwards(scene.primitive_bounds(primitive)), primitive }
+            Item::new(frame.outwards(scene.primitive_bounds(primitive)), primitive)
         };
-        let mut items: Vec<Item> = (0..primitives.len()).into_par_iter().map(item).collect();
-        let nodes = grow::tree(&mut items, rule);
-        let primitives = items.iter().map(|item| item.primitive).collect();
+        let count = primitives.len();
+        let mut items = Vec::with_capacity(count + more);
+        (0..count).into_par_iter().map(item).collect_into_vec(&mut items);
+        let bounds =
+            items.iter().fold(FrameBox::EMPTY, |all, item: &Item| all.union(item.bounds()));
+        if let Some(&first) = items.first() {
+            items.resize(count + more, first);
+        }
+        let nodes = grow::tree(&mut items, count, &rule(frame, bounds));
+        let primitives = items.iter().map(Item::primitive).collect();
         Self { scene, frame, nodes, primitives }
     }
-}
 
-/// What is divided between nodes: a primitive and its box.
-#[derive(Clone, Copy)]
-struct Item {
-    bounds: FrameBox,
-    primitive: PrimitiveId,
-}
-
-impl Item {
-    /// Twice the centre of the box: only comparisons are made with it.
-    #[inline(always)]
-    fn center(&self) -> Vec3A {
-        self.bounds.min + self.bounds.max
+    /// Moves the nodes together.
+    fn close_gaps(&mut self) {
+        let mut nodes = Vec::with_capacity(self.nodes.len());
+        nodes.extend(self.nodes.first());
+        let mut pending = Vec::from_iter((!nodes.is_empty()).then_some(0));
+        while let Some(index) = pending.pop() {
+            let node: TreeNode = nodes[index];
+            if node.is_leaf() {
+                continue;
+            }
+            let children = node.children().map(|child| self.nodes[child]);
+            let first = nodes.len();
+            nodes[index].first = first as u32;
+            nodes.extend(children);
+            pending.extend([first + 1, first]);
+        }
+        self.nodes = nodes;
     }
+}
+
+/// How many parts there may be more than primitives, in percent.
+const MORE_PARTS: usize = 30;
+
+/// The object median: sorts the lower half, by the longest axis of the box around the centres, to the
+/// front, and returns how many that are, of an odd number the smaller part. Where centres coincide the
+/// smaller id is lower.
+#[inline]
+pub fn split_at_median<T>(items: &mut [T], key: impl Fn(&T) -> (Vec3A, PrimitiveId)) -> usize {
+    let middle = items.len() / 2;
+    let around = |(min, max): (Vec3A, Vec3A), item| {
+        let (center, _) = key(item);
+        (min.min(center), max.max(center))
+    };
+    let (min, max) = items.iter().fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), around);
+    let axis = (max - min).max_position();
+    items.select_nth_unstable_by(middle, |a, b| {
+        let ((a, a_id), (b, b_id)) = (key(a), key(b));
+        a[axis].total_cmp(&b[axis]).then(a_id.cmp(&b_id))
+    });
+    middle
 }
 
 #[cfg(test)]

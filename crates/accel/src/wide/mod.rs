@@ -5,6 +5,8 @@ mod lanes;
 mod packet;
 mod walk;
 
+use std::collections::HashSet;
+
 use glam::DVec3;
 use lancer_core::geometry::{ConvexVolume, Interval, Ray};
 use lancer_core::intersector::{
@@ -194,7 +196,7 @@ impl<'s> Wide<'s> {
     }
 
     fn with_kernel(primitives: Subset<'s>, kernel: Kernel) -> Self {
-        let tree = BinaryTree::of_single_primitives(&primitives);
+        let tree = BinaryTree::of_split_primitives(&primitives);
         let collapse::Collapsed { nodes, leaves } = collapse::collapse(&tree);
         Self { scene: tree.scene, frame: tree.frame, nodes, leaves, kernel }
     }
@@ -204,9 +206,12 @@ impl<'s> Wide<'s> {
         size_of_val(self.nodes.as_slice()) + size_of_val(self.leaves.as_slice())
     }
 
-    /// Checks that every box contains what is below it and that every one of these primitives is in one leaf.
+    /// Checks that every box contains what is below it, that the boxes of the leaves with one of these primitives cover
+    /// it, and that primitives are not split into more parts than they may be.
     pub fn validate<'p>(&self, primitives: impl Into<Subset<'p>>) -> Result<(), String> {
-        let mut coverage = Coverage::new(primitives.into(), self.nodes.len());
+        let primitives = primitives.into();
+        let most = BinaryTree::most_parts(primitives.len());
+        let mut coverage = Coverage::new(primitives, self.nodes.len());
         let mut pending = if self.nodes.is_empty() { Vec::new() } else { vec![(0, 0)] };
         while let Some((index, depth)) = pending.pop() {
             coverage.node()?;
@@ -221,7 +226,7 @@ impl<'s> Wide<'s> {
                 }
                 if child.is_leaf() {
                     let primitives: Vec<PrimitiveId> = self.primitives(child).collect();
-                    coverage.leaf(&self.frame, bounds, &primitives)?;
+                    coverage.parts(bounds, &primitives)?;
                     continue;
                 }
                 let child = child.0 as usize;
@@ -234,7 +239,7 @@ impl<'s> Wide<'s> {
                 pending.push((child, depth + 1));
             }
         }
-        coverage.all()
+        coverage.all_parts(&self.frame, most)
     }
 
     /// The words of a leaf of triangles, as far as eight lanes of them are read at once.
@@ -387,9 +392,9 @@ impl Intersector for Wide<'_> {
 }
 
 impl BeamTraversal for Wide<'_> {
-    /// Opens the nearest node that the beam may meet, until the nearest of all is a primitive: each comes
-    /// once, in order of depth and id, as by brute force. Boxes are decided in `f64`: a beam has a dozen
-    /// half-spaces, and few boxes need them all.
+    /// Opens the nearest node that the beam may meet, until the nearest of all is a primitive. Each comes once, in
+    /// order of depth and id; one of several parts with the nearest of those that the beam may meet. Boxes are
+    /// decided in `f64`: a beam has a dozen half-spaces, and few boxes need them all.
     fn walk_beam<O: Observer>(
         &self,
         volume: &ConvexVolume,
@@ -397,11 +402,14 @@ impl BeamTraversal for Wide<'_> {
         observer: &mut O,
         visit: impl FnMut(PrimitiveId) -> f64,
     ) {
+        let mut tested = HashSet::new();
         let root = (!self.nodes.is_empty()).then_some(Child::node(0));
         Front::new(self.scene, volume, far, observer).search(root, visit, |front, child, found| {
             if child.is_leaf() {
                 for primitive in self.primitives(child) {
-                    front.primitive(primitive, found);
+                    if tested.insert(primitive) {
+                        front.primitive(primitive, found);
+                    }
                 }
                 return;
             }
