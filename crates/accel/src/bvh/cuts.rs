@@ -179,11 +179,12 @@ impl BinCut {
         }
     }
 
-    /// The cheapest cut between bins with items on both sides; there is none if all centres coincide.
+    /// The cheapest cut between bins with items on both sides; there is none if all centres coincide. One by size must
+    /// cost less than the share `by_size` of the best one by place.
     #[inline(never)] // The bins must not take room on the stack of the recursion.
-    pub(super) fn best(items: &[Item]) -> Option<Self> {
+    pub(super) fn best(items: &[Item], by_size: f32) -> Option<Self> {
         let bins = Bins::around(around_centers(items));
-        let (mut by_place, mut by_size) = ([[Content::NONE; BINS]; 3], [Content::NONE; BINS]);
+        let (mut by_place, mut of_sizes) = ([[Content::NONE; BINS]; 3], [Content::NONE; BINS]);
         for item in items {
             for (contents, index) in by_place.iter_mut().zip(bins.of_place(item)) {
                 contents[index] = contents[index].and(Content { bounds: item.bounds(), count: 1 });
@@ -191,15 +192,16 @@ impl BinCut {
         }
         if items.len() >= FEWEST_BY_SIZE {
             for item in items {
-                let content = &mut by_size[bins.of_size(item)];
+                let content = &mut of_sizes[bins.of_size(item)];
                 *content = content.and(Content { bounds: item.bounds(), count: 1 });
             }
         }
         let mut best: Option<Self> = None;
         let axes = (0..3).map(|axis| (Order::Axis(axis), &by_place[axis]));
-        for (order, contents) in axes.chain([(Order::Size, &by_size)]) {
+        for (order, contents) in axes.chain([(Order::Size, &of_sizes)]) {
+            let share = if order == Order::Size { by_size } else { 1.0 };
             if let Some((last, parts)) = cheapest_cut(contents)
-                && best.as_ref().is_none_or(|best| parts.cost < best.parts.cost)
+                && best.as_ref().is_none_or(|best| parts.cost < share * best.parts.cost)
             {
                 best = Some(Self { bins, order, last, parts });
             }
@@ -242,11 +244,11 @@ mod tests {
     #[test]
     fn the_heuristic_cuts_where_there_is_nothing() {
         let mut row = items([8.0, 0.0, 1.0].map(|x| Vec3A::new(x, 0.0, 0.0)));
-        let cut = BinCut::best(&row).unwrap();
+        let cut = BinCut::best(&row, 1.0).unwrap();
         assert_eq!((cut.order, cut.parts.cost), (Order::Axis(0), 4.25));
         cut.partition(&mut row);
         assert_eq!((cut.parts.left.count, row[2].primitive()), (2, PrimitiveId(0)));
-        assert!(BinCut::best(&items([Vec3A::ONE; 3])).is_none());
+        assert!(BinCut::best(&items([Vec3A::ONE; 3]), 1.0).is_none());
     }
 
     /// The same row, all cuts compared; and of boxes in one place the one with the least id is cut off.

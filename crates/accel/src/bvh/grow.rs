@@ -23,6 +23,8 @@ pub(super) struct Rule<'s> {
     pub(super) split: Split,
     /// Primitives of a leaf at most.
     pub(super) max_leaf: usize,
+    /// The share of the best other cut's cost below which primitives are divided by their sizes.
+    pub(super) by_size: f32,
     /// What splits primitives, if they may be.
     pub(super) splitter: Option<Splitter<'s>>,
 }
@@ -47,13 +49,17 @@ const UNKNOWN: TreeNode = TreeNode { bounds: FrameBox::EMPTY, first: 0, count: 0
 /// Sorts the first `count` items into leaves and returns the nodes above them. Below a node stand first its two
 /// children, then what is below the left one, then what is below the right one, with gaps where leaves have
 /// several items or places are free. Where primitives are split, items fill free places.
-pub(super) fn tree(room: &mut [Item], count: usize, rule: &Rule) -> Vec<TreeNode> {
+pub(super) fn tree(
+    room: &mut [Item],
+    count: usize,
+    bounds: FrameBox,
+    rule: &Rule,
+) -> Vec<TreeNode> {
     if count == 0 {
         return Vec::new();
     }
     let mut nodes = vec![UNKNOWN; 2 * room.len() - 1];
     let (root, below) = nodes.split_first_mut().expect("a root");
-    let bounds = around(&room[..count]);
     let crowd = Crowd { room, count, first: 0 };
     grow(root, Below { nodes: below, first: 1 }, crowd, bounds, 0, rule);
     nodes
@@ -143,7 +149,7 @@ fn divide(
         cut.sort(&mut room[..count]);
         return Some([cut.parts.left, cut.parts.right]);
     }
-    let Some(cut) = BinCut::best(&room[..count]) else {
+    let Some(cut) = BinCut::best(&room[..count], rule.by_size) else {
         return too_many.then(|| halve(&mut room[..count]));
     };
     if !too_many && !pays(&cut.parts) {
@@ -182,7 +188,7 @@ mod tests {
     use super::*;
     use crate::bvh::item::items;
 
-    const RULE: Rule = Rule { split: Split::Sah, max_leaf: MAX_LEAF, splitter: None };
+    const RULE: Rule = Rule { split: Split::Sah, max_leaf: MAX_LEAF, by_size: 1.0, splitter: None };
 
     /// The steps from the root to the deepest leaf.
     fn depth(nodes: &[TreeNode], node: usize) -> usize {
@@ -232,7 +238,7 @@ mod tests {
         let crowd = Crowd { room: &mut room, count: COUNT, first: 0 };
         grow(root, Below { nodes: below, first: 1 }, crowd, bounds, SAH_DEPTH, &RULE);
         assert_eq!(depth(&nodes, 0), 8);
-        assert!(depth(&tree(&mut row(), COUNT, &RULE), 0) > 8);
+        assert!(depth(&tree(&mut row(), COUNT, bounds, &RULE), 0) > 8);
     }
 
     /// Free places are shared 2 : 1, and nothing is lost.

@@ -10,7 +10,7 @@ pub(crate) use grow::MAX_DEPTH;
 use glam::Vec3A;
 use lancer_core::geometry::{ConvexVolume, Ray};
 use lancer_core::intersector::{BeamIndex, BeamTraversal, Hit, Observer, Query, Traversal};
-use lancer_core::scene::{PrimitiveId, Subset};
+use lancer_core::scene::{PrimitiveId, Scene, Subset};
 use rayon::prelude::*;
 
 use crate::binary_tree::{BinaryTree, TreeNode, TreeStatistics};
@@ -114,56 +114,38 @@ impl BeamTraversal for Bvh<'_> {
 impl<'s> BinaryTree<'s> {
     /// Builds the tree. It is the same for any number of threads.
     pub fn build(primitives: impl Into<Subset<'s>>, split: Split) -> Self {
-        let rule = Rule { split, max_leaf: MAX_LEAF, splitter: None };
-        let mut tree = Self::grown(&primitives.into(), 0, |_, _| rule);
+        let rule = Rule { split, max_leaf: MAX_LEAF, by_size: 1.0, splitter: None };
+        let mut tree = Items::of(&primitives.into(), 0).tree(&rule);
         tree.close_gaps();
         tree
     }
 
     /// The tree by the surface area heuristic down to single primitives, to be collapsed.
     pub(crate) fn of_single_primitives(primitives: &Subset<'s>) -> Self {
-        let rule = Rule { split: Split::Sah, max_leaf: 1, splitter: None };
-        Self::grown(primitives, 0, |_, _| rule)
+        Self::of_whole_primitives(primitives).0
+    }
+
+    /// The same, and whether splitting primitives may make a better one: whether many boxes overlap.
+    pub(crate) fn of_whole_primitives(primitives: &Subset<'s>) -> (Self, bool) {
+        let items = Items::of(primitives, 0);
+        let splitter = Some(items.splitter());
+        let rule = Rule { split: Split::Sah, max_leaf: 1, by_size: 1.0, splitter };
+        let tree = items.tree(&rule);
+        let crowded = rule.splitter.map_or(0, Splitter::crowded);
+        (tree, crowded >= primitives.len().max(1))
     }
 
     /// The same with primitives that are split where their boxes overlap, so that some are in several leaves, each
     /// with a part of their boxes. There are gaps between nodes and between primitives.
     pub(crate) fn of_split_primitives(primitives: &Subset<'s>) -> Self {
-        let count = primitives.len();
-        Self::grown(primitives, Self::most_parts(count) - count, |frame, root| Rule {
-            split: Split::Sah,
-            max_leaf: 1,
-            splitter: Some(Splitter::new(primitives.scene(), frame, root)),
-        })
+        let items = Items::of(primitives, Self::most_parts(primitives.len()) - primitives.len());
+        let splitter = Some(items.splitter());
+        items.tree(&Rule { split: Split::Sah, max_leaf: 1, by_size: SPLIT_BY_SIZE, splitter })
     }
 
     /// How many parts so many primitives are split into at most.
     pub(crate) fn most_parts(primitives: usize) -> usize {
         primitives + primitives * MORE_PARTS / 100
-    }
-
-    fn grown(
-        primitives: &Subset<'s>,
-        more: usize,
-        rule: impl FnOnce(Frame, FrameBox) -> Rule<'s>,
-    ) -> Self {
-        let scene = primitives.scene();
-        let frame = Frame::of(primitives.bounds());
-        let item = |place| {
-            let primitive = primitives.get(place);
-            Item::new(frame.outwards(scene.primitive_bounds(primitive)), primitive)
-        };
-        let count = primitives.len();
-        let mut items = Vec::with_capacity(count + more);
-        (0..count).into_par_iter().map(item).collect_into_vec(&mut items);
-        let bounds =
-            items.iter().fold(FrameBox::EMPTY, |all, item: &Item| all.union(item.bounds()));
-        if let Some(&first) = items.first() {
-            items.resize(count + more, first);
-        }
-        let nodes = grow::tree(&mut items, count, &rule(frame, bounds));
-        let primitives = items.iter().map(Item::primitive).collect();
-        Self { scene, frame, nodes, primitives }
     }
 
     /// Moves the nodes together.
@@ -188,6 +170,48 @@ impl<'s> BinaryTree<'s> {
 
 /// How many parts there may be more than primitives, in percent.
 const MORE_PARTS: usize = 30;
+/// Where primitives may be split a cut by size must be better by this: what it parts cannot be split in one another's
+/// place any more.
+const SPLIT_BY_SIZE: f32 = 0.5;
+
+/// The primitives that a tree is built over.
+struct Items<'s> {
+    scene: &'s Scene,
+    frame: Frame,
+    /// As many as there are primitives, and free places.
+    room: Vec<Item>,
+    count: usize,
+    bounds: FrameBox,
+}
+
+impl<'s> Items<'s> {
+    fn of(primitives: &Subset<'s>, free: usize) -> Self {
+        let (scene, count) = (primitives.scene(), primitives.len());
+        let frame = Frame::of(primitives.bounds());
+        let item = |place| {
+            let primitive = primitives.get(place);
+            Item::new(frame.outwards(scene.primitive_bounds(primitive)), primitive)
+        };
+        let mut room = Vec::with_capacity(count + free);
+        (0..count).into_par_iter().map(item).collect_into_vec(&mut room);
+        let bounds = room.iter().fold(FrameBox::EMPTY, |all, item: &Item| all.union(item.bounds()));
+        if let Some(&first) = room.first() {
+            room.resize(count + free, first);
+        }
+        Self { scene, frame, room, count, bounds }
+    }
+
+    fn splitter(&self) -> Splitter<'s> {
+        Splitter::new(self.scene, self.frame, self.bounds)
+    }
+
+    fn tree(self, rule: &Rule) -> BinaryTree<'s> {
+        let Self { scene, frame, mut room, count, bounds } = self;
+        let nodes = grow::tree(&mut room, count, bounds, rule);
+        let primitives = room.iter().map(Item::primitive).collect();
+        BinaryTree { scene, frame, nodes, primitives }
+    }
+}
 
 /// The object median: sorts the lower half, by the longest axis of the box around the centres, to the
 /// front, and returns how many that are, of an odd number the smaller part. Where centres coincide the

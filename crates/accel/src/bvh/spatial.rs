@@ -1,5 +1,7 @@
 //! Splits of space: a primitive may be on both sides, each with the part of its box that is needed there.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use glam::{DVec3, Vec3A};
 use lancer_core::scene::{Scene, Shape};
 
@@ -20,53 +22,131 @@ pub(super) struct Splitter<'s> {
     frame: Frame,
     /// Parts whose boxes overlap by less are not worth the search for a better plane.
     least_overlap: f32,
+    crowded: AtomicUsize,
 }
 
-/// The overlap, as a share of the root's area, from which space is split. On scans no boxes overlap so much.
-const LEAST_OVERLAP: f32 = 1e-5;
+/// The overlap, as a share of the root's area, from which space is split; of less nothing is gained.
+const LEAST_OVERLAP: f32 = 1e-3;
+
+/// And as a share of the node's length along every axis. Next to a cut through a surface boxes overlap by a triangle's
+/// width: a split would gain no more than that.
+const LEAST_WIDTH: f32 = 1.0 / 8.0;
 
 /// An edge that spans less along an axis is not cut across it: see [`Splitter::halves`].
 const LEAST_SPAN: f64 = 1.0 / (1 << 24) as f64;
 
-/// Planes at equal distances across an axis.
+/// Planes at equal distances across each axis.
 #[derive(Clone, Copy)]
 struct Slices {
-    axis: usize,
-    start: f32,
-    width: f32,
-    per_unit: f32,
+    start: Vec3A,
+    width: Vec3A,
+    per_unit: Vec3A,
 }
 
 impl Slices {
-    fn of(bounds: FrameBox, axis: usize) -> Self {
-        let extent = bounds.max[axis] - bounds.min[axis];
-        let width = extent / BINS as f32;
-        Self { axis, start: bounds.min[axis], width, per_unit: BINS as f32 / extent }
+    fn of(bounds: FrameBox) -> Self {
+        let extent = bounds.max - bounds.min;
+        let per_unit = Vec3A::splat(BINS as f32) / extent.max(Vec3A::splat(f32::MIN_POSITIVE));
+        Self { start: bounds.min, width: extent / BINS as f32, per_unit }
     }
 
-    /// The slice of a coordinate.
+    /// The slice of a point on each axis.
     #[inline(always)]
-    fn at(&self, x: f32) -> usize {
-        ((x - self.start) * self.per_unit).clamp(0.0, BINS as f32 - 1.0) as usize
+    fn at(&self, p: Vec3A) -> [usize; 3] {
+        let place = ((p - self.start) * self.per_unit).max(Vec3A::ZERO);
+        place.min(Vec3A::splat(BINS as f32 - 1.0)).to_array().map(|x| x as usize)
     }
 
-    /// The first and the last slice of an item. By the margin of its box it does not reach into a slice.
+    /// The first and the last slice of a box on each axis. By its margin it does not reach into a slice.
     #[inline(always)]
-    fn span(&self, bounds: FrameBox) -> [usize; 2] {
-        let (low, high) = (bounds.min[self.axis], bounds.max[self.axis]);
-        let margin = (2.0 * f32::EPSILON).min(0.5 * (high - low));
-        [self.at(low + margin), self.at(high - margin)]
+    fn span(&self, bounds: FrameBox) -> [[usize; 3]; 2] {
+        let half = 0.5 * (bounds.max - bounds.min);
+        let margin = half.min(Vec3A::splat(2.0 * f32::EPSILON));
+        [self.at(bounds.min + margin), self.at(bounds.max - margin)]
     }
 
     /// The plane before a slice.
-    fn plane(&self, slice: usize) -> f32 {
-        self.start + self.width * slice as f32
+    #[inline(always)]
+    fn plane(&self, axis: usize, slice: usize) -> f32 {
+        self.start[axis] + self.width[axis] * slice as f32
+    }
+
+    /// Adds the parts of a triangle, as far as they lie in its box, to the slices from the first to the last that it
+    /// reaches: between two planes lie its corners there, and the points where the longest edge along the axis and one
+    /// of the others cross the planes.
+    #[inline(always)]
+    fn add<const AXIS: usize>(
+        &self,
+        corners: [Vec3A; 3],
+        whole: FrameBox,
+        [first, last]: [usize; 2],
+        slices: &mut [Slice; BINS],
+    ) {
+        let [mut low, mut middle, mut high] = corners;
+        let sort = |a: &mut Vec3A, b: &mut Vec3A| {
+            if a[AXIS] > b[AXIS] {
+                std::mem::swap(a, b);
+            }
+        };
+        sort(&mut low, &mut middle);
+        sort(&mut middle, &mut high);
+        sort(&mut low, &mut middle);
+        let slope =
+            |from: Vec3A, to: Vec3A| (to - from) / (to[AXIS] - from[AXIS]).max(f32::MIN_POSITIVE);
+        let (longest, rise, fall) = (slope(low, high), slope(low, middle), slope(middle, high));
+        let hull = |a: Vec3A, b: Vec3A| FrameBox { min: a.min(b), max: a.max(b) };
+        let point = |p: Vec3A| FrameBox { min: p, max: p };
+        let mut before = point(low);
+        let mut is_before_middle = true;
+        for k in first..=last {
+            let mut part = before;
+            if k == last {
+                part = part.union(point(high));
+            } else {
+                let x = self.plane(AXIS, k + 1).clamp(low[AXIS], high[AXIS]);
+                let other = if x < middle[AXIS] {
+                    low + rise * (x - low[AXIS])
+                } else {
+                    middle + fall * (x - middle[AXIS])
+                };
+                before = hull(low + longest * (x - low[AXIS]), other);
+                part = part.union(before);
+            }
+            if is_before_middle && (k == last || before.max[AXIS] >= middle[AXIS]) {
+                part = part.union(point(middle));
+                is_before_middle = false;
+            }
+            slices[k].bounds = slices[k].bounds.union(part.intersection(whole));
+        }
+        slices[first].begin += 1;
+        slices[last].end += 1;
     }
 }
 
-/// A split: the last slice before it.
+/// What lies in a slice, and how many items begin and end there.
+#[derive(Clone, Copy)]
+struct Slice {
+    bounds: FrameBox,
+    begin: u32,
+    end: u32,
+}
+
+impl Slice {
+    const NONE: Self = Self { bounds: FrameBox::EMPTY, begin: 0, end: 0 };
+
+    /// Adds an item that reaches into no other slice.
+    #[inline(always)]
+    fn add(&mut self, whole: FrameBox) {
+        self.bounds = self.bounds.union(whole);
+        self.begin += 1;
+        self.end += 1;
+    }
+}
+
+/// A plane across an axis, after a slice, and what is on its sides.
 struct Plane {
     slices: Slices,
+    axis: usize,
     last: usize,
     parts: Parts,
 }
@@ -74,7 +154,13 @@ struct Plane {
 impl<'s> Splitter<'s> {
     /// What splits the primitives of a scene whose root has these bounds.
     pub(super) fn new(scene: &'s Scene, frame: Frame, root: FrameBox) -> Self {
-        Self { scene, frame, least_overlap: LEAST_OVERLAP * root.half_area() }
+        let least_overlap = LEAST_OVERLAP * root.half_area();
+        Self { scene, frame, least_overlap, crowded: AtomicUsize::new(0) }
+    }
+
+    /// How many items the nodes had whose parts overlap.
+    pub(super) fn crowded(self) -> usize {
+        self.crowded.into_inner()
     }
 
     /// Divides the first `count` items by a plane, if the `parts` of the best cut between primitives overlap and
@@ -88,10 +174,12 @@ impl<'s> Splitter<'s> {
     ) -> Option<[Content; 2]> {
         let overlap = parts.left.bounds.intersection(parts.right.bounds);
         let side = overlap.max - overlap.min;
-        if room.len() == count
-            || side.min_element() < 0.0
-            || overlap.half_area() < self.least_overlap
-        {
+        let least_side = LEAST_WIDTH * (bounds.max - bounds.min);
+        if side.cmplt(least_side).any() || overlap.half_area() < self.least_overlap {
+            return None;
+        }
+        self.crowded.fetch_add(count, Ordering::Relaxed);
+        if room.len() == count {
             return None;
         }
         let plane = self.best_plane(&room[..count], room.len(), bounds)?;
@@ -101,59 +189,55 @@ impl<'s> Splitter<'s> {
     /// The cheapest plane with fewer items on each side than on both, and places for all.
     #[inline(never)] // The slices must not take room on the stack of the recursion.
     fn best_plane(&self, items: &[Item], places: usize, bounds: FrameBox) -> Option<Plane> {
-        let mut slices = [Content::NONE; BINS];
-        let all = [0, 1, 2].map(|axis| Slices::of(bounds, axis));
-        // Per axis what lies in each slice, and how many items begin and end there.
-        let mut contents = [[FrameBox::EMPTY; BINS]; 3];
-        let (mut begin, mut end) = ([[0_u32; BINS]; 3], [[0_u32; BINS]; 3]);
+        let slices = Slices::of(bounds);
+        let mut all = [[Slice::NONE; BINS]; 3];
         for item in items {
             let whole = item.bounds();
-            let mut corners = None;
-            for axis in 0..3 {
-                if all[axis].width <= 0.0 {
-                    continue;
+            let [first, last] = slices.span(whole);
+            let corners = if first == last { None } else { self.corners(item) };
+            let Some(corners) = corners else {
+                // What is not split belongs where its middle is.
+                let middle = if first == last { first } else { slices.at(0.5 * item.center()) };
+                for (slices, middle) in all.iter_mut().zip(middle) {
+                    slices[middle].add(whole);
                 }
-                let [first, last] = all[axis].span(whole);
-                if first == last {
-                    contents[axis][first] = contents[axis][first].union(whole);
-                    begin[axis][first] += 1;
-                    end[axis][first] += 1;
-                    continue;
-                }
-                let corners = *corners.get_or_insert_with(|| self.corners(item));
-                match corners {
-                    Some(corners) => {
-                        slice(corners, whole, &all[axis], [first, last], &mut contents[axis]);
-                        begin[axis][first] += 1;
-                        end[axis][last] += 1;
-                    }
-                    None => {
-                        let middle = all[axis].at(0.5 * item.center()[axis]);
-                        contents[axis][middle] = contents[axis][middle].union(whole);
-                        begin[axis][middle] += 1;
-                        end[axis][middle] += 1;
-                    }
-                }
+                continue;
+            };
+            let span = |axis: usize| [first[axis], last[axis]];
+            if first[0] == last[0] {
+                all[0][first[0]].add(whole);
+            } else {
+                slices.add::<0>(corners, whole, span(0), &mut all[0]);
+            }
+            if first[1] == last[1] {
+                all[1][first[1]].add(whole);
+            } else {
+                slices.add::<1>(corners, whole, span(1), &mut all[1]);
+            }
+            if first[2] == last[2] {
+                all[2][first[2]].add(whole);
+            } else {
+                slices.add::<2>(corners, whole, span(2), &mut all[2]);
             }
         }
         let mut best: Option<Plane> = None;
-        for axis in 0..3 {
-            let mut right = Content::NONE;
+        for (axis, all) in all.iter().enumerate() {
+            let mut rights = [Content::NONE; BINS];
             for k in (1..BINS).rev() {
-                right = right.and(Content { bounds: contents[axis][k], count: end[axis][k] });
-                slices[k - 1] = right;
+                let here = Content { bounds: all[k].bounds, count: all[k].end };
+                rights[k - 1] = rights[k].and(here);
             }
             let mut left = Content::NONE;
             for last in 0..BINS - 1 {
-                left = left.and(Content { bounds: contents[axis][last], count: begin[axis][last] });
-                let right = slices[last];
-                let [l, r] = [left.count as usize, right.count as usize];
-                if l == items.len() || r == items.len() || l + r > places || l == 0 || r == 0 {
-                    continue;
-                }
-                let parts = Parts::new(left, right);
-                if best.as_ref().is_none_or(|best| parts.cost < best.parts.cost) {
-                    best = Some(Plane { slices: all[axis], last, parts });
+                left = left.and(Content { bounds: all[last].bounds, count: all[last].begin });
+                let parts = Parts::new(left, rights[last]);
+                let counts = [left.count, rights[last].count].map(|count| count as usize);
+                let divides = counts.iter().all(|count| (1..items.len()).contains(count));
+                if divides
+                    && counts[0] + counts[1] <= places
+                    && best.as_ref().is_none_or(|best| parts.cost < best.parts.cost)
+                {
+                    best = Some(Plane { slices, axis, last, parts });
                 }
             }
         }
@@ -173,21 +257,21 @@ impl<'s> Splitter<'s> {
     /// Puts what is left of a plane first. What reaches across it is split, or belongs to one side as a whole
     /// where that is cheaper.
     fn partition(&self, room: &mut [Item], count: usize, plane: &Plane) -> [Content; 2] {
-        let slices = &plane.slices;
+        let &Plane { slices, axis, .. } = plane;
         let Parts { mut left, mut right, .. } = plane.parts;
         let mut parts = [Content::NONE; 2];
         let (mut lefts, mut all) = (0, count);
-        let at = slices.plane(plane.last + 1);
+        let at = slices.plane(axis, plane.last + 1);
         for k in 0..count {
             let item = room[k];
             let whole = item.bounds();
-            let [first, last] = slices.span(whole);
+            let [first, last] = slices.span(whole).map(|slices| slices[axis]);
             let mut halves = [Some(whole); 2];
             if last <= plane.last {
                 halves[1] = None;
             } else if first > plane.last {
                 halves[0] = None;
-            } else if let Some(cut) = self.halves(&item, slices.axis, at) {
+            } else if let Some(cut) = self.halves(&item, axis, at) {
                 let fewer = |content: Content| Content { count: content.count - 1, ..content };
                 let to_left =
                     Parts::new(Content { bounds: left.bounds.union(whole), ..left }, fewer(right));
@@ -202,7 +286,7 @@ impl<'s> Splitter<'s> {
                     halves = cut;
                 }
             } else {
-                let side = slices.at(0.5 * item.center()[slices.axis]) > plane.last;
+                let side = slices.at(0.5 * item.center())[axis] > plane.last;
                 halves[usize::from(!side)] = None;
             }
             for (part, half) in parts.iter_mut().zip(halves) {
@@ -271,39 +355,5 @@ impl<'s> Splitter<'s> {
             let half = FrameBox::around(min, max).intersection(item.bounds());
             half.min.cmple(half.max).all().then_some(half)
         }))
-    }
-}
-
-/// Adds the parts of a triangle, as far as they lie in its box, to the slices from the first to the last that it
-/// reaches: between the planes lie its corners there, and where its edges cross the planes.
-#[inline(always)]
-fn slice(
-    corners: [Vec3A; 3],
-    whole: FrameBox,
-    slices: &Slices,
-    [first, last]: [usize; 2],
-    contents: &mut [FrameBox; BINS],
-) {
-    let axis = slices.axis;
-    let mut parts = [FrameBox::EMPTY; BINS];
-    let mut add = |slice: usize, p: Vec3A| {
-        parts[slice] = parts[slice].union(FrameBox { min: p, max: p });
-    };
-    for k in 0..3 {
-        let (mut from, mut to) = (corners[k], corners[(k + 1) % 3]);
-        add(slices.at(from[axis]).clamp(first, last), from);
-        if from[axis] > to[axis] {
-            (from, to) = (to, from);
-        }
-        let [start, end] = [from, to].map(|p| slices.at(p[axis]).clamp(first, last));
-        let slope = (to - from) / (to[axis] - from[axis]);
-        for slice in start + 1..=end {
-            let cut = from + slope * (slices.plane(slice) - from[axis]);
-            add(slice - 1, cut);
-            add(slice, cut);
-        }
-    }
-    for slice in first..=last {
-        contents[slice] = contents[slice].union(parts[slice].intersection(whole));
     }
 }

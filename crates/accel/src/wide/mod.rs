@@ -1,5 +1,6 @@
 //! « Accélération matérielle », on the processor: eight boxes, then eight triangles at a time.
 
+mod choice;
 mod collapse;
 mod lanes;
 mod packet;
@@ -74,6 +75,9 @@ pub struct Wide<'s> {
     leaves: Vec<f32>,
     kernel: Kernel,
 }
+
+/// What rays may cost in a tree of split primitives, as a share of the cost in one of whole primitives: it is larger.
+const WORTH: f64 = 0.97;
 
 /// Edges count as this long at least.
 const SHORTEST: f32 = 1.0 / (1 << 20) as f32;
@@ -196,8 +200,18 @@ impl<'s> Wide<'s> {
     }
 
     fn with_kernel(primitives: Subset<'s>, kernel: Kernel) -> Self {
-        let tree = BinaryTree::of_split_primitives(&primitives);
-        let collapse::Collapsed { nodes, leaves } = collapse::collapse(&tree);
+        let (tree, overlap) = BinaryTree::of_whole_primitives(&primitives);
+        let whole = Self::of(&tree, kernel);
+        if !overlap {
+            return whole;
+        }
+        let split = Self::of(&BinaryTree::of_split_primitives(&primitives), kernel);
+        let [of_whole, of_split] = [&whole, &split].map(|wide| choice::cost(wide, &primitives));
+        if of_split < WORTH * of_whole { split } else { whole }
+    }
+
+    fn of(tree: &BinaryTree<'s>, kernel: Kernel) -> Self {
+        let collapse::Collapsed { nodes, leaves } = collapse::collapse(tree);
         Self { scene: tree.scene, frame: tree.frame, nodes, leaves, kernel }
     }
 
