@@ -1,8 +1,10 @@
 use std::ops::Range;
 
+use glam::DVec3;
 use lancer_core::geometry::Ray;
 use lancer_core::intersector::{Hit, Observer, Probe, Query, Traversal, Wanted};
-use lancer_core::scene::{PrimitiveId, Scene, Subset};
+use lancer_core::scene::{PrimitiveId, Scene, Shape, Subset};
+use smallvec::SmallVec;
 
 use crate::four_boxes::{FourSlabs, Frame, FrameBox};
 
@@ -193,15 +195,15 @@ impl Traversal for BinaryTree<'_> {
 /// What a validation has found below the root.
 pub(crate) struct Coverage<'s> {
     all: Subset<'s>,
-    /// Whether each of them was found in a leaf, in their order.
-    seen: Vec<bool>,
+    /// The boxes of the leaves in which each of them was found, in their order.
+    seen: Vec<SmallVec<[FrameBox; 1]>>,
     nodes: usize,
     reached: usize,
 }
 
 impl<'s> Coverage<'s> {
     pub(crate) fn new(all: Subset<'s>, nodes: usize) -> Self {
-        Self { seen: vec![false; all.len()], all, nodes, reached: 0 }
+        Self { seen: vec![SmallVec::new(); all.len()], all, nodes, reached: 0 }
     }
 
     /// A tree reaches each of its nodes once.
@@ -218,12 +220,11 @@ impl<'s> Coverage<'s> {
         primitives: &[PrimitiveId],
     ) -> Result<(), String> {
         for &primitive in primitives {
-            let place = self.all.place(primitive);
-            let place =
-                place.ok_or_else(|| format!("{primitive:?} is not among the primitives"))?;
-            if std::mem::replace(&mut self.seen[place], true) {
+            let seen = self.seen(primitive)?;
+            if !seen.is_empty() {
                 return Err(format!("{primitive:?} is in two leaves"));
             }
+            seen.push(bounds);
             if !bounds.contains(frame.outwards(self.all.scene().primitive_bounds(primitive))) {
                 return Err(format!("{primitive:?} sticks out of its leaf"));
             }
@@ -231,12 +232,72 @@ impl<'s> Coverage<'s> {
         Ok(())
     }
 
+    /// A leaf may have parts of its primitives, each of them once.
+    pub(crate) fn parts(
+        &mut self,
+        bounds: FrameBox,
+        primitives: &[PrimitiveId],
+    ) -> Result<(), String> {
+        for (k, &primitive) in primitives.iter().enumerate() {
+            if primitives[..k].contains(&primitive) {
+                return Err(format!("{primitive:?} is twice in a leaf"));
+            }
+            self.seen(primitive)?.push(bounds);
+        }
+        Ok(())
+    }
+
+    fn seen(&mut self, primitive: PrimitiveId) -> Result<&mut SmallVec<[FrameBox; 1]>, String> {
+        let place = self.all.place(primitive);
+        let place = place.ok_or_else(|| format!("{primitive:?} is not among the primitives"))?;
+        Ok(&mut self.seen[place])
+    }
+
+    /// No node and no primitive may be missing, the leaves' boxes must cover each primitive, and there may be no more
+    /// than so many parts.
+    pub(crate) fn all_parts(self, frame: &Frame, most: usize) -> Result<(), String> {
+        let parts: usize = self.seen.iter().map(SmallVec::len).sum();
+        if parts > most {
+            return Err(format!("{parts} parts of {} primitives", self.all.len()));
+        }
+        for (primitive, boxes) in self.all.iter().zip(&self.seen) {
+            let is_covered = |at: FrameBox| boxes.iter().any(|bounds| bounds.contains(at));
+            let whole = frame.outwards(self.all.scene().primitive_bounds(primitive));
+            let is_whole = is_covered(whole);
+            if !boxes.is_empty() && !is_whole && !self.samples(frame, primitive).all(is_covered) {
+                return Err(format!("{primitive:?} sticks out of its leaves"));
+            }
+        }
+        self.all()
+    }
+
+    /// Points of a triangle's surface, with half of the margin of boxes around them. Of a sphere, which is not split,
+    /// its box.
+    fn samples(&self, frame: &Frame, primitive: PrimitiveId) -> impl Iterator<Item = FrameBox> {
+        const STEPS: u32 = 24;
+        let scene = self.all.scene();
+        let corners = match scene.shape(primitive) {
+            Shape::Triangle(index) => Some(scene.mesh.corners(index).map(|p| frame.point(p))),
+            Shape::Sphere(_) => None,
+        };
+        let weights = (0..=STEPS).flat_map(|i| (0..=STEPS - i).map(move |k| (i, k)));
+        let points = corners.into_iter().flat_map(move |[a, b, c]| {
+            let part = |k: u32| f64::from(k) / f64::from(STEPS);
+            weights.clone().map(move |(i, k)| a + (b - a) * part(i) + (c - a) * part(k))
+        });
+        let half = 0.5 * f64::from(f32::EPSILON);
+        let around =
+            move |p: DVec3| FrameBox { min: (p - half).as_vec3a(), max: (p + half).as_vec3a() };
+        let sphere = corners.is_none().then(|| frame.outwards(scene.primitive_bounds(primitive)));
+        points.map(around).chain(sphere)
+    }
+
     /// No node and no primitive may be missing.
     pub(crate) fn all(self) -> Result<(), String> {
         if self.reached < self.nodes {
             return Err(format!("{} of {} nodes are reached", self.reached, self.nodes));
         }
-        match self.seen.iter().position(|seen| !seen) {
+        match self.seen.iter().position(|seen| seen.is_empty()) {
             Some(missing) => Err(format!("{:?} is in no leaf", self.all.get(missing))),
             None => Ok(()),
         }

@@ -56,6 +56,14 @@ impl FrameBox {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
+    /// The box between two points of a frame, rounded outwards by more than the primitive test can err.
+    pub(crate) fn around(min: DVec3, max: DVec3) -> Self {
+        let margin = f64::from(f32::EPSILON);
+        let min = (min - margin).as_vec3a().to_array().map(f32::next_down);
+        let max = (max + margin).as_vec3a().to_array().map(f32::next_up);
+        Self { min: min.into(), max: max.into() }
+    }
+
     /// What is in both.
     pub(crate) fn intersection(self, other: Self) -> Self {
         Self { min: self.min.max(other.min), max: self.max.min(other.max) }
@@ -131,10 +139,7 @@ impl Frame {
 
     /// A box in this frame, rounded outwards by more than the primitive test can err.
     pub(crate) fn outwards(&self, bounds: Bounds3) -> FrameBox {
-        let margin = f64::from(f32::EPSILON);
-        let min = (self.point(bounds.min) - margin).as_vec3a().to_array().map(f32::next_down);
-        let max = (self.point(bounds.max) + margin).as_vec3a().to_array().map(f32::next_up);
-        FrameBox { min: min.into(), max: max.into() }
+        FrameBox::around(self.point(bounds.min), self.point(bounds.max))
     }
 }
 

@@ -1,20 +1,24 @@
 //! « Hiérarchie de volumes englobants »: the binary tree of our own.
 
+mod cuts;
 mod grow;
+mod item;
+mod spatial;
 
 pub(crate) use grow::MAX_DEPTH;
-pub use grow::split_at_median;
 
 use glam::Vec3A;
 use lancer_core::geometry::{ConvexVolume, Ray};
 use lancer_core::intersector::{BeamIndex, BeamTraversal, Hit, Observer, Query, Traversal};
-use lancer_core::scene::{PrimitiveId, Subset};
+use lancer_core::scene::{PrimitiveId, Scene, Subset};
 use rayon::prelude::*;
 
-use crate::binary_tree::{BinaryTree, TreeStatistics};
+use crate::binary_tree::{BinaryTree, TreeNode, TreeStatistics};
 use crate::four_boxes::{Frame, FrameBox};
 use crate::four_wide::FourWide;
 use grow::{MAX_LEAF, Rule};
+use item::Item;
+use spatial::Splitter;
 
 /// How a node's primitives are divided between its two children.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -110,41 +114,122 @@ impl BeamTraversal for Bvh<'_> {
 impl<'s> BinaryTree<'s> {
     /// Builds the tree. It is the same for any number of threads.
     pub fn build(primitives: impl Into<Subset<'s>>, split: Split) -> Self {
-        Self::grown(&primitives.into(), Rule { split, max_leaf: MAX_LEAF })
+        let rule = Rule { split, max_leaf: MAX_LEAF, by_size: 1.0, splitter: None };
+        let mut tree = Items::of(&primitives.into(), 0).tree(&rule);
+        tree.close_gaps();
+        tree
     }
 
     /// The tree by the surface area heuristic down to single primitives, to be collapsed.
     pub(crate) fn of_single_primitives(primitives: &Subset<'s>) -> Self {
-        Self::grown(primitives, Rule { split: Split::Sah, max_leaf: 1 })
+        Self::of_whole_primitives(primitives).0
     }
 
-    fn grown(primitives: &Subset<'s>, rule: Rule) -> Self {
-        let scene = primitives.scene();
+    /// The same, and whether splitting primitives may make a better one: whether many boxes overlap.
+    pub(crate) fn of_whole_primitives(primitives: &Subset<'s>) -> (Self, bool) {
+        let items = Items::of(primitives, 0);
+        let splitter = Some(items.splitter());
+        let rule = Rule { split: Split::Sah, max_leaf: 1, by_size: 1.0, splitter };
+        let tree = items.tree(&rule);
+        let crowded = rule.splitter.map_or(0, Splitter::crowded);
+        (tree, crowded >= primitives.len().max(1))
+    }
+
+    /// The same with primitives that are split where their boxes overlap, so that some are in several leaves, each
+    /// with a part of their boxes. There are gaps between nodes and between primitives.
+    pub(crate) fn of_split_primitives(primitives: &Subset<'s>) -> Self {
+        let items = Items::of(primitives, Self::most_parts(primitives.len()) - primitives.len());
+        let splitter = Some(items.splitter());
+        items.tree(&Rule { split: Split::Sah, max_leaf: 1, by_size: SPLIT_BY_SIZE, splitter })
+    }
+
+    /// How many parts so many primitives are split into at most.
+    pub(crate) fn most_parts(primitives: usize) -> usize {
+        primitives + primitives * MORE_PARTS / 100
+    }
+
+    /// Moves the nodes together.
+    fn close_gaps(&mut self) {
+        let mut nodes = Vec::with_capacity(self.nodes.len());
+        nodes.extend(self.nodes.first());
+        let mut pending = Vec::from_iter((!nodes.is_empty()).then_some(0));
+        while let Some(index) = pending.pop() {
+            let node: TreeNode = nodes[index];
+            if node.is_leaf() {
+                continue;
+            }
+            let children = node.children().map(|child| self.nodes[child]);
+            let first = nodes.len();
+            nodes[index].first = first as u32;
+            nodes.extend(children);
+            pending.extend([first + 1, first]);
+        }
+        self.nodes = nodes;
+    }
+}
+
+/// How many parts there may be more than primitives, in percent.
+const MORE_PARTS: usize = 30;
+/// Where primitives may be split a cut by size must be better by this: what it parts cannot be split in one another's
+/// place any more.
+const SPLIT_BY_SIZE: f32 = 0.5;
+
+/// The primitives that a tree is built over.
+struct Items<'s> {
+    scene: &'s Scene,
+    frame: Frame,
+    /// As many as there are primitives, and free places.
+    room: Vec<Item>,
+    count: usize,
+    bounds: FrameBox,
+}
+
+impl<'s> Items<'s> {
+    fn of(primitives: &Subset<'s>, free: usize) -> Self {
+        let (scene, count) = (primitives.scene(), primitives.len());
         let frame = Frame::of(primitives.bounds());
         let item = |place| {
             let primitive = primitives.get(place);
-            Item { bounds: frame.outwards(scene.primitive_bounds(primitive)), primitive }
+            Item::new(frame.outwards(scene.primitive_bounds(primitive)), primitive)
         };
-        let mut items: Vec<Item> = (0..primitives.len()).into_par_iter().map(item).collect();
-        let nodes = grow::tree(&mut items, rule);
-        let primitives = items.iter().map(|item| item.primitive).collect();
-        Self { scene, frame, nodes, primitives }
+        let mut room = Vec::with_capacity(count + free);
+        (0..count).into_par_iter().map(item).collect_into_vec(&mut room);
+        let bounds = room.iter().fold(FrameBox::EMPTY, |all, item: &Item| all.union(item.bounds()));
+        if let Some(&first) = room.first() {
+            room.resize(count + free, first);
+        }
+        Self { scene, frame, room, count, bounds }
+    }
+
+    fn splitter(&self) -> Splitter<'s> {
+        Splitter::new(self.scene, self.frame, self.bounds)
+    }
+
+    fn tree(self, rule: &Rule) -> BinaryTree<'s> {
+        let Self { scene, frame, mut room, count, bounds } = self;
+        let nodes = grow::tree(&mut room, count, bounds, rule);
+        let primitives = room.iter().map(Item::primitive).collect();
+        BinaryTree { scene, frame, nodes, primitives }
     }
 }
 
-/// What is divided between nodes: a primitive and its box.
-#[derive(Clone, Copy)]
-struct Item {
-    bounds: FrameBox,
-    primitive: PrimitiveId,
-}
-
-impl Item {
-    /// Twice the centre of the box: only comparisons are made with it.
-    #[inline(always)]
-    fn center(&self) -> Vec3A {
-        self.bounds.min + self.bounds.max
-    }
+/// The object median: sorts the lower half, by the longest axis of the box around the centres, to the
+/// front, and returns how many that are, of an odd number the smaller part. Where centres coincide the
+/// smaller id is lower.
+#[inline]
+pub fn split_at_median<T>(items: &mut [T], key: impl Fn(&T) -> (Vec3A, PrimitiveId)) -> usize {
+    let middle = items.len() / 2;
+    let around = |(min, max): (Vec3A, Vec3A), item| {
+        let (center, _) = key(item);
+        (min.min(center), max.max(center))
+    };
+    let (min, max) = items.iter().fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), around);
+    let axis = (max - min).max_position();
+    items.select_nth_unstable_by(middle, |a, b| {
+        let ((a, a_id), (b, b_id)) = (key(a), key(b));
+        a[axis].total_cmp(&b[axis]).then(a_id.cmp(&b_id))
+    });
+    middle
 }
 
 #[cfg(test)]

@@ -25,8 +25,7 @@ struct Below {
     /// `left[k]`: how many of at most k + 1 of them are in its left part; 0 where fewer, or one leaf or
     /// node, are better.
     left: [u8; WIDTH],
-    /// Its primitives stand together.
-    first: u32,
+    /// Its leaves, of one primitive each.
     count: u32,
 }
 
@@ -41,7 +40,7 @@ struct Below {
 /// Source: Ylitie, Karras, Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
 /// BVHs*, HPG 2017.
 fn costs(tree: &[TreeNode]) -> Vec<Below> {
-    let unknown = Below { cost: [0.0; WIDTH - 1], left: [0; WIDTH], first: 0, count: 0 };
+    let unknown = Below { cost: [0.0; WIDTH - 1], left: [0; WIDTH], count: 0 };
     let mut all = vec![unknown; tree.len()];
     if let Some((root, descendants)) = all.split_first_mut() {
         *root = cost_of(tree, 0, descendants);
@@ -59,7 +58,7 @@ fn cost_of(tree: &[TreeNode], index: usize, descendants: &mut [Below]) -> Below 
     let area = node.bounds.half_area();
     if node.is_leaf() {
         let cost = [LEAF_COST * area; WIDTH - 1];
-        return Below { cost, left: [0; WIDTH], first: node.first, count: node.count };
+        return Below { cost, left: [0; WIDTH], count: 1 };
     }
     let [left, right] = node.children();
     let below_right = if tree[right].is_leaf() { None } else { Some(tree[right].children()[0]) };
@@ -88,12 +87,7 @@ fn inner(area: f32, left: &Below, right: &Below) -> Below {
         best
     };
     let count = left.count + right.count;
-    let mut below = Below {
-        cost: [0.0; WIDTH - 1],
-        left: [0; WIDTH],
-        first: left.first.min(right.first),
-        count,
-    };
+    let mut below = Below { cost: [0.0; WIDTH - 1], left: [0; WIDTH], count };
     let (distributed, lefts) = best(WIDTH);
     below.left[WIDTH - 1] = lefts;
     below.cost[0] = area + distributed;
@@ -131,7 +125,7 @@ pub(super) fn collapse(tree: &BinaryTree) -> Collapsed {
         below.count <= WIDTH as u32 && below.cost[0] >= LEAF_COST * area
     };
     // Where the words of each leaf begin, and what is in it.
-    let mut leaves: Vec<(usize, &[PrimitiveId])> = Vec::new();
+    let mut leaves: Vec<(usize, Primitives)> = Vec::new();
     let mut words = 0;
     // (a node of the tree, the node and lane that refer to it)
     let mut pending: Vec<(usize, Option<(usize, usize)>)> = vec![(0, None)];
@@ -150,12 +144,13 @@ pub(super) fn collapse(tree: &BinaryTree) -> Collapsed {
         for (lane, child) in children.into_iter().enumerate() {
             nodes[index].set_box(lane, tree.nodes[child].bounds);
             if is_leaf(child) {
-                let Below { first, count, .. } = below[child];
-                let primitives = &tree.primitives[first as usize..][..count as usize];
-                let has_spheres = leaf::has_spheres(tree.scene, primitives);
+                let mut primitives = Primitives::new();
+                gather(tree, child, &mut primitives);
+                let has_spheres = leaf::has_spheres(tree.scene, &primitives);
                 nodes[index].children[lane] = Child::leaf(words, primitives.len(), has_spheres);
-                leaves.push((words, primitives));
+                let begin = words;
                 words += leaf::words(primitives.len(), has_spheres);
+                leaves.push((begin, primitives));
             } else {
                 pending.push((child, Some((index, lane))));
             }
@@ -164,8 +159,24 @@ pub(super) fn collapse(tree: &BinaryTree) -> Collapsed {
     Collapsed { nodes, leaves: fill(tree, &leaves, words) }
 }
 
+/// The primitives of a leaf.
+type Primitives = SmallVec<[PrimitiveId; WIDTH]>;
+
+/// The primitives below a node of the tree. One that was split may be there twice, and comes once.
+fn gather(tree: &BinaryTree, node: usize, into: &mut Primitives) {
+    let node = &tree.nodes[node];
+    if node.is_leaf() {
+        let primitive = tree.primitives[node.first as usize];
+        if !into.contains(&primitive) {
+            into.push(primitive);
+        }
+        return;
+    }
+    node.children().into_iter().for_each(|child| gather(tree, child, into));
+}
+
 /// The words of all leaves.
-fn fill(tree: &BinaryTree, leaves: &[(usize, &[PrimitiveId])], count: usize) -> Vec<f32> {
+fn fill(tree: &BinaryTree, leaves: &[(usize, Primitives)], count: usize) -> Vec<f32> {
     // Eight numbers are read at a time, whose-ever they are.
     let mut words = vec![0.0; count + WIDTH];
     let mut parts = Vec::new();

@@ -1,5 +1,6 @@
 //! « Accélération matérielle », on the processor: eight boxes, then eight triangles at a time.
 
+mod choice;
 mod collapse;
 mod decide;
 mod few;
@@ -9,6 +10,8 @@ mod leaf;
 mod packet;
 mod spheres;
 mod walk;
+
+use std::collections::HashSet;
 
 use glam::DVec3;
 use lancer_core::geometry::{ConvexVolume, Interval, Ray};
@@ -79,6 +82,9 @@ pub struct Wide<'s> {
     few: Option<Few>,
     kernel: Kernel,
 }
+
+/// What rays may cost in a tree of split primitives, as a share of the cost in one of whole primitives: it is larger.
+const WORTH: f64 = 0.97;
 
 /// What computes with eight lanes.
 #[derive(Clone, Copy, Debug)]
@@ -184,8 +190,18 @@ impl<'s> Wide<'s> {
 
     /// A tree, of however few.
     fn tree(primitives: Subset<'s>, kernel: Kernel) -> Self {
-        let tree = BinaryTree::of_single_primitives(&primitives);
-        let collapse::Collapsed { nodes, leaves } = collapse::collapse(&tree);
+        let (tree, overlap) = BinaryTree::of_whole_primitives(&primitives);
+        let whole = Self::of(&tree, kernel);
+        if !overlap {
+            return whole;
+        }
+        let split = Self::of(&BinaryTree::of_split_primitives(&primitives), kernel);
+        let [of_whole, of_split] = [&whole, &split].map(|wide| choice::cost(wide, &primitives));
+        if of_split < WORTH * of_whole { split } else { whole }
+    }
+
+    fn of(tree: &BinaryTree<'s>, kernel: Kernel) -> Self {
+        let collapse::Collapsed { nodes, leaves } = collapse::collapse(tree);
         Self { scene: tree.scene, frame: tree.frame, nodes, leaves, few: None, kernel }
     }
 
@@ -195,13 +211,15 @@ impl<'s> Wide<'s> {
         size_of_val(self.nodes.as_slice()) + size_of_val(self.leaves.as_slice()) + few
     }
 
-    /// Checks that every box contains what is below it and that every one of these primitives is in one leaf.
+    /// Checks that every box contains what is below it, that the boxes of the leaves with one of these primitives cover
+    /// it, and that primitives are not split into more parts than they may be.
     pub fn validate<'p>(&self, primitives: impl Into<Subset<'p>>) -> Result<(), String> {
         let primitives = primitives.into();
         if let Some(few) = &self.few {
             let are_all = few.primitives().eq(primitives.iter());
             return if are_all { Ok(()) } else { Err("it has not the primitives".into()) };
         }
+        let most = BinaryTree::most_parts(primitives.len());
         let mut coverage = Coverage::new(primitives, self.nodes.len());
         let mut pending = if self.nodes.is_empty() { Vec::new() } else { vec![(0, 0)] };
         while let Some((index, depth)) = pending.pop() {
@@ -217,7 +235,7 @@ impl<'s> Wide<'s> {
                 }
                 if child.is_leaf() {
                     let primitives: Vec<PrimitiveId> = self.primitives(child).collect();
-                    coverage.leaf(&self.frame, bounds, &primitives)?;
+                    coverage.parts(bounds, &primitives)?;
                     continue;
                 }
                 let child = child.0 as usize;
@@ -230,7 +248,7 @@ impl<'s> Wide<'s> {
                 pending.push((child, depth + 1));
             }
         }
-        coverage.all()
+        coverage.all_parts(&self.frame, most)
     }
 
     /// The words of a leaf of triangles, as far as eight lanes of them are read at once.
@@ -449,9 +467,9 @@ impl Intersector for Wide<'_> {
 }
 
 impl BeamTraversal for Wide<'_> {
-    /// Opens the nearest node that the beam may meet, until the nearest of all is a primitive: each comes
-    /// once, in order of depth and id, as by brute force. Boxes are decided in `f64`: a beam has a dozen
-    /// half-spaces, and few boxes need them all.
+    /// Opens the nearest node that the beam may meet, until the nearest of all is a primitive. Each comes once, in
+    /// order of depth and id; one of several parts with the nearest of those that the beam may meet. Boxes are
+    /// decided in `f64`: a beam has a dozen half-spaces, and few boxes need them all.
     fn walk_beam<O: Observer>(
         &self,
         volume: &ConvexVolume,
@@ -459,6 +477,7 @@ impl BeamTraversal for Wide<'_> {
         observer: &mut O,
         visit: impl FnMut(PrimitiveId) -> f64,
     ) {
+        let mut tested = HashSet::new();
         let root = (!self.nodes.is_empty()).then_some(Child::node(0));
         let mut front = Front::new(self.scene, volume, far, observer);
         for primitive in self.few.iter().flat_map(Few::primitives) {
@@ -467,7 +486,9 @@ impl BeamTraversal for Wide<'_> {
         front.search(root, visit, |front, child, found| {
             if child.is_leaf() {
                 for primitive in self.primitives(child) {
-                    front.primitive(primitive, found);
+                    if tested.insert(primitive) {
+                        front.primitive(primitive, found);
+                    }
                 }
                 return;
             }

@@ -49,7 +49,7 @@ fn a_validation_finds_what_is_wrong() {
         let [first, second] = [0, 1].map(|lane| Wide::record(leaf, lane) as usize);
         wide.leaves[first] = wide.leaves[second];
     });
-    assert!(twice.ends_with("is in two leaves"), "{twice}");
+    assert!(twice.ends_with("is twice in a leaf"), "{twice}");
     let missing = broken(&|wide| {
         let (node, _) = leaf(wide);
         wide.nodes[node].set_box(0, FrameBox::EMPTY);
