@@ -148,7 +148,7 @@ fn filter_first<L: Lanes>(lanes: L, wide: &Wide, ray: &Ray) -> Option<(FourSlabs
         Some((leaf, lane))
     })?;
     let words = wide.words(leaf);
-    let filtered = wide_ray.filter(words, leaf.count(), f32::INFINITY);
+    let filtered = wide_ray.filter(lanes, words, leaf.count(), f32::INFINITY);
     if filtered.kept >> lane & 1 == 0 {
         return None;
     }

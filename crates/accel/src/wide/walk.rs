@@ -9,7 +9,7 @@ use lancer_core::intersector::{Hit, Observer, Probe};
 use lancer_core::scene::PrimitiveId;
 
 use super::collapse::WIDTH;
-use super::decide::Decision;
+use super::decide::{Certain, Decision};
 use super::filter::{Bounds, Filtered, U};
 use super::lanes::{Lanes, Vectors, cross, dot, splat3, sub3};
 use super::leaf::HEADER;
@@ -460,6 +460,28 @@ pub(super) fn closest<L: Lanes, O: Observer>(
     range: Interval,
     observer: &mut O,
 ) -> Option<Hit> {
+    closest_or(
+        lanes,
+        wide,
+        ray,
+        range,
+        observer,
+        #[inline(always)]
+        |_| false,
+    )
+}
+
+/// The closest hit, unless `f64` is left with one triangle that the ray meets for certain, and somebody `takes` its
+/// record: then nothing.
+#[inline(always)]
+fn closest_or<L: Lanes, O: Observer>(
+    lanes: L,
+    wide: &Wide,
+    ray: &Ray,
+    range: Interval,
+    observer: &mut O,
+    takes: impl FnOnce(u32) -> bool,
+) -> Option<Hit> {
     if wide.nodes.is_empty() {
         return None;
     }
@@ -471,10 +493,15 @@ pub(super) fn closest<L: Lanes, O: Observer>(
     let mut closest =
         Closest { lanes, wide, ray, range, in_frame, early: &mut early, candidates, max };
     let _ = walk(lanes, wide, &mut closest, observer);
-    let Closest { candidates, max, early, .. } = closest;
+    let Closest { mut candidates, max, early, .. } = closest;
     let early = *early;
-    if candidates.length == 0 && early.is_none() {
-        return None;
+    if early.is_none() {
+        let last = candidates.pop()? as u32;
+        if candidates.length == 0 && last & CERTAIN != 0 && takes(last & !CERTAIN) {
+            return None;
+        }
+        // It is there still.
+        candidates.length += 1;
     }
     let decision = Decision::new(lanes, wide, lanes.read_here(ray), range, early);
     decide(decision, candidates, &in_frame.slabs, max)
@@ -489,9 +516,22 @@ pub(super) fn closest_each<L: Lanes>(
     range: Interval,
     hits: &mut [Option<Hit>],
 ) {
-    for (ray, hit) in rays.iter().zip(hits) {
-        *hit = closest(lanes, wide, ray, range, &mut ());
+    let mut certain = Certain::new();
+    for (k, (ray, hit)) in rays.iter().zip(&mut *hits).enumerate() {
+        *hit = closest_or(
+            lanes,
+            wide,
+            ray,
+            range,
+            &mut (),
+            #[inline(always)]
+            |record| {
+                certain.push(lanes, wide, ray, k, record);
+                true
+            },
+        );
     }
+    certain.solve(lanes, wide, rays, range, hits);
 }
 
 /// A ray on its way to any hit.

@@ -17,7 +17,7 @@ use super::walk::{self, Walker};
 use super::{Child, Node, Wide};
 
 /// Rays of a packet at most: 8 × 8 pixels.
-const RAYS: usize = 64;
+pub(super) const RAYS: usize = 64;
 const VECTORS: usize = RAYS / WIDTH;
 /// A packet pays where a triangle is at least this part of the packet wide.
 const WIDEST: f64 = 0.25;
