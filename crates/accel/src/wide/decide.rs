@@ -94,19 +94,9 @@ impl Certain {
         Self { along: [SmallVec::new(), SmallVec::new(), SmallVec::new()] }
     }
 
-    /// Adds a ray, by its place. What `f64` will read is on its way.
+    /// Adds a ray, by its place.
     #[inline(always)]
-    pub(super) fn push<L: Lanes>(
-        &mut self,
-        lanes: L,
-        wide: &Wide,
-        ray: &Ray,
-        place: usize,
-        record: u32,
-    ) {
-        for corner in wide.triangle(record).1 {
-            lanes.prefetch(&wide.scene.mesh.positions[corner]);
-        }
+    pub(super) fn push(&mut self, ray: &Ray, place: usize, record: u32) {
         self.along[Axis::longest(ray.direction) as usize].push((place as u32, record));
     }
 

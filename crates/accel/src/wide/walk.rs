@@ -526,7 +526,11 @@ pub(super) fn closest_each<L: Lanes>(
             &mut (),
             #[inline(always)]
             |record| {
-                certain.push(lanes, wide, ray, k, record);
+                // What `f64` will read is on its way while others walk.
+                for corner in wide.triangle(record).1 {
+                    lanes.prefetch(&wide.scene.mesh.positions[corner]);
+                }
+                certain.push(ray, k, record);
                 true
             },
         );

@@ -27,7 +27,7 @@ impl<L: Lanes> Packet<'_, '_, L> {
                 }
                 *hit = decision.best();
             } else if best != NONE {
-                certain.push(self.lanes, self.wide, ray, k, best);
+                certain.push(ray, k, best);
             }
         }
         certain.solve(self.lanes, self.wide, self.rays, self.range, hits);
