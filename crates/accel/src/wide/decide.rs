@@ -141,18 +141,21 @@ fn solve_four<L: Lanes>(
     // One by one: what maps an array is not sure to be inlined.
     let triangle = |k: usize| wide.triangle(four[k].1);
     let (of_i, of_j, of_k, of_m) = (triangle(0), triangle(1), triangle(2), triangle(3));
-    let ([a, b, c], [d, e, f]) = (wide.corners(of_i.1), wide.corners(of_j.1));
-    let ([g, h, n], [p, q, r]) = (wide.corners(of_k.1), wide.corners(of_m.1));
+    let ids = [of_i.0, of_j.0, of_k.0, of_m.0];
+    let corners = if ids == [ids[0]; 4] {
+        let [a, b, c] = wide.corners(of_i.1);
+        [gather(l, [a; 4]), gather(l, [b; 4]), gather(l, [c; 4])]
+    } else {
+        let ([a, b, c], [d, e, f]) = (wide.corners(of_i.1), wide.corners(of_j.1));
+        let ([g, h, n], [p, q, r]) = (wide.corners(of_k.1), wide.corners(of_m.1));
+        [gather(l, [a, d, g, p]), gather(l, [b, e, h, q]), gather(l, [c, f, n, r])]
+    };
     let origin = gather(l, [i.origin, j.origin, k.origin, m.origin]);
-    let corners = [
-        relative(gather(l, [a, d, g, p]), origin),
-        relative(gather(l, [b, e, h, q]), origin),
-        relative(gather(l, [c, f, n, r]), origin),
-    ];
+    let [a, b, c] = corners;
+    let corners = [relative(a, origin), relative(b, origin), relative(c, origin)];
     let directions = gather(l, [i.direction, j.direction, k.direction, m.direction]);
     let (t, [u, v, w]) = solve_triangle(corners, &Shear::along(axis, directions));
     let (t, u, v, w) = (l.numbers(t), l.numbers(u), l.numbers(v), l.numbers(w));
-    let ids = [of_i.0, of_j.0, of_k.0, of_m.0];
     for (lane, (place, _)) in four.into_iter().enumerate() {
         let mut probe = Probe::new(wide.scene, &rays[place as usize], range);
         let barycentric = DVec3::new(u[lane], v[lane], w[lane]);

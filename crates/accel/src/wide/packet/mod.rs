@@ -23,6 +23,8 @@ const VECTORS: usize = RAYS / WIDTH;
 const WIDEST: f64 = 0.25;
 /// With more work than this each ray goes alone: about what all of them cost alone.
 const MOST_WORK: usize = 16 * RAYS;
+/// With no more than this the next packet surely pays.
+const LITTLE_WORK: usize = 4 * RAYS;
 /// So many packets go alone without being asked after one that did not pay.
 const PAUSE: usize = 3;
 /// Hits that cannot be told apart in `f32`, at most; with more of them each ray goes alone.
@@ -38,15 +40,16 @@ pub(super) fn closest<L: Lanes>(
     hits: &mut [Option<Hit>],
 ) {
     let mut packet = Packet::new(lanes, wide, range);
-    let mut pause = 0;
+    let (mut pause, mut paid) = (0, false);
     for (rays, hits) in rays.chunks(RAYS).zip(hits.chunks_mut(RAYS)) {
         if pause > 0 {
             pause -= 1;
-        } else if packet.aim(rays) && packet.pays() && packet.walk() {
+        } else if packet.aim(rays) && (paid || packet.pays()) && packet.walk() {
             packet.answer(hits);
+            paid = packet.spent <= LITTLE_WORK;
             continue;
         } else {
-            pause = PAUSE;
+            (pause, paid) = (PAUSE, false);
         }
         walk::closest_each(lanes, wide, rays, range, hits);
     }
