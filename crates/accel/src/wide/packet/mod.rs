@@ -15,6 +15,7 @@ use super::lanes::{Lanes, Vectors, cross, dot, most, splat3, sub3};
 use super::leaf::HEADER;
 use super::walk::{self, Walker};
 use super::{Child, Node, Wide};
+use crate::pending::Lanes as Bits;
 
 /// Rays of a packet at most: 8 × 8 pixels.
 pub(super) const RAYS: usize = 64;
@@ -224,18 +225,17 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
         self.lowest[vector] = l.store(l.select(nearer, lowest, before));
         let shorter = certain & l.above(max, highest);
         self.max[vector] = l.store(l.select(shorter, highest, max));
-        let mut nearer_left = nearer;
-        while nearer_left != 0 {
-            let lane = nearer_left.trailing_zeros() as usize % WIDTH;
-            nearer_left &= nearer_left - 1;
+        for lane in Bits::<WIDTH>(nearer) {
             self.best[vector][lane] = triangle.record;
         }
-        let mut doubtful = filtered.kept & !nearer;
-        self.doubtful |= u64::from(doubtful) << (vector * WIDTH);
-        while doubtful != 0 {
-            let lane = doubtful.trailing_zeros() as usize % WIDTH;
-            doubtful &= doubtful - 1;
-            self.doubts.push(((vector * WIDTH + lane) as u64) << 32 | u64::from(triangle.record));
+        for lane in Bits::<WIDTH>(filtered.kept & !nearer) {
+            let (ray, best) = (vector * WIDTH + lane, self.best[vector][lane]);
+            // The same triangle in another leaf is no rival.
+            if best != NONE && self.wide.triangle(best).0 == self.wide.triangle(triangle.record).0 {
+                continue;
+            }
+            self.doubtful |= 1 << ray;
+            self.doubts.push((ray as u64) << 32 | u64::from(triangle.record));
         }
         shorter != 0
     }
@@ -305,7 +305,7 @@ impl<L: Lanes> Walker<L> for Packet<'_, '_, L> {
             middle: [l.splat(self.spread.middle[0]), l.splat(self.spread.middle[1])],
             half: [l.splat(self.spread.half[0]), l.splat(self.spread.half[1])],
         };
-        let mut met = spread.may_meet(l, [u, v, det], bounds) & ((1 << count) - 1);
+        let met = spread.may_meet(l, [u, v, det], bounds) & ((1 << count) - 1);
         if met == 0 {
             return ControlFlow::Continue(());
         }
@@ -315,9 +315,7 @@ impl<L: Lanes> Walker<L> for Packet<'_, '_, L> {
             *row = l.store(x);
         }
         let mut found = false;
-        while met != 0 {
-            let lane = met.trailing_zeros() as usize % WIDTH;
-            met &= met - 1;
+        for lane in Bits::<WIDTH>(met) {
             let triangle = Triangle {
                 u: [rows[0][lane], rows[1][lane], rows[2][lane]],
                 v: [rows[3][lane], rows[4][lane], rows[5][lane]],
@@ -326,10 +324,7 @@ impl<L: Lanes> Walker<L> for Packet<'_, '_, L> {
                 bounds: self.bounds.of(l, words, l.splat(rows[10][lane])),
                 record: Wide::record(leaf, lane),
             };
-            let mut vectors = self.vectors_that_may_meet(&triangle);
-            while vectors != 0 {
-                let vector = vectors.trailing_zeros() as usize % VECTORS;
-                vectors &= vectors - 1;
+            for vector in Bits::<VECTORS>(self.vectors_that_may_meet(&triangle)) {
                 self.spent += 1;
                 if self.doubts.len() + WIDTH > DOUBTS {
                     return ControlFlow::Break(());
