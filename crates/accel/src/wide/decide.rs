@@ -94,10 +94,10 @@ impl Certain {
         Self { along: [SmallVec::new(), SmallVec::new(), SmallVec::new()] }
     }
 
-    /// Adds a ray, by its place.
+    /// Adds a ray along an axis, by its place.
     #[inline(always)]
-    pub(super) fn push(&mut self, ray: &Ray, place: usize, record: u32) {
-        self.along[Axis::longest(ray.direction) as usize].push((place as u32, record));
+    pub(super) fn push(&mut self, axis: Axis, place: usize, record: u32) {
+        self.along[axis as usize].push((place as u32, record));
     }
 
     /// The hits of all.

@@ -3,7 +3,7 @@
 use std::mem::MaybeUninit;
 use std::ops::ControlFlow;
 
-use lancer_core::geometry::{Interval, Ray};
+use lancer_core::geometry::{Axis, Interval, Ray};
 use lancer_core::intersector::{Hit, Observer, Probe};
 use lancer_core::scene::PrimitiveId;
 
@@ -429,7 +429,7 @@ pub(super) fn closest_each<L: Lanes>(
                 for corner in wide.triangle(record).1 {
                     lanes.prefetch(&wide.scene.mesh.positions[corner]);
                 }
-                certain.push(ray, k, record);
+                certain.push(Axis::longest(ray.direction), k, record);
                 true
             },
         );

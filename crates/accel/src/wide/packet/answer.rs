@@ -1,5 +1,6 @@
 //! From the filter's findings to hits.
 
+use lancer_core::geometry::Axis;
 use lancer_core::intersector::Hit;
 
 use super::super::collapse::WIDTH;
@@ -27,7 +28,8 @@ impl<L: Lanes> Packet<'_, '_, L> {
                 }
                 *hit = decision.best();
             } else if best != NONE {
-                certain.push(ray, k, best);
+                let axis = self.axis.unwrap_or_else(|| Axis::longest(ray.direction));
+                certain.push(axis, k, best);
             }
         }
         certain.solve(self.lanes, self.wide, self.rays, self.range, hits);

@@ -5,7 +5,7 @@ mod answer;
 
 use std::ops::ControlFlow;
 
-use lancer_core::geometry::{Interval, Ray};
+use lancer_core::geometry::{Axis, Interval, Ray};
 use lancer_core::intersector::Hit;
 use smallvec::SmallVec;
 
@@ -77,6 +77,8 @@ pub(super) struct Packet<'p, 's, L: Lanes> {
     wide: &'p Wide<'s>,
     rays: &'p [Ray],
     range: Interval,
+    /// Along which all rays are longest, if they are for sure.
+    axis: Option<Axis>,
     /// The axes of p, q and depth.
     axes: [usize; 3],
     sign: f32,
@@ -129,6 +131,7 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
             wide,
             rays: &[],
             range,
+            axis: None,
             axes: [0, 1, 2],
             sign: 1.0,
             spread: Spread::between([0.0; 2], [0.0; 2]),
