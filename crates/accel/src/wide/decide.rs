@@ -1,12 +1,14 @@
 //! What `f64` decides.
 
 use glam::DVec3;
-use lancer_core::geometry::{Axis, Interval, Ray, Shear, solve_triangle};
+use lancer_core::geometry::{Axis, Interval, Ray, Real, Shear, solve_triangle};
 use lancer_core::intersector::{Hit, Probe};
 use lancer_core::scene::PrimitiveId;
+use smallvec::SmallVec;
 
 use super::Wide;
-use super::lanes::Lanes;
+use super::lanes::{Lanes, gather};
+use super::packet::RAYS;
 
 /// A ray that `f64` decides on, triangle by triangle: by the formulas of [`solve_triangle`] in lanes of one number
 /// each. Of several numbers the compiler would make vectors, and shuffle longer than it computes.
@@ -34,10 +36,8 @@ impl<'w, L: Lanes> Decision<'w, L> {
         if let Some(hit) = early {
             probe.keep(hit);
         }
-        let (origin, direction) = (ray.origin, ray.direction);
-        let origin = [lanes.one(origin.x), lanes.one(origin.y), lanes.one(origin.z)];
-        let along = [lanes.one(direction.x), lanes.one(direction.y), lanes.one(direction.z)];
-        let shear = Shear::along(Axis::longest(direction), along);
+        let origin = ones(lanes, ray.origin);
+        let shear = Shear::along(Axis::longest(ray.direction), ones(lanes, ray.direction));
         Self { lanes, wide, ray, range, origin, shear, probe }
     }
 
@@ -49,10 +49,12 @@ impl<'w, L: Lanes> Decision<'w, L> {
         if self.probe.best().is_some_and(|best| best.primitive == id) {
             return false;
         }
-        let [a, b, c] = self.wide.corners(corners);
-        let corners = [self.relative(a), self.relative(b), self.relative(c)];
-        let (t, [u, v, w]) = solve_triangle(corners, &self.shear);
         let lanes = self.lanes;
+        let [a, b, c] = self.wide.corners(corners);
+        let [a, b, c] = [ones(lanes, a), ones(lanes, b), ones(lanes, c)];
+        let origin = self.origin;
+        let corners = [relative(a, origin), relative(b, origin), relative(c, origin)];
+        let (t, [u, v, w]) = solve_triangle(corners, &self.shear);
         let t = lanes.number(t);
         if is_certain {
             let barycentric = [lanes.number(u), lanes.number(v), lanes.number(w)].into();
@@ -66,12 +68,6 @@ impl<'w, L: Lanes> Decision<'w, L> {
         confirmed(self.wide, self.ray, self.range, id).is_some_and(|hit| self.probe.keep(hit))
     }
 
-    #[inline(always)]
-    fn relative(&self, corner: DVec3) -> [L::One; 3] {
-        let (lanes, [x, y, z]) = (self.lanes, self.origin);
-        [lanes.one(corner.x) - x, lanes.one(corner.y) - y, lanes.one(corner.z) - z]
-    }
-
     /// Where the closest hit is, or the range ends.
     #[inline(always)]
     pub(super) fn end(&self) -> f64 {
@@ -83,6 +79,100 @@ impl<'w, L: Lanes> Decision<'w, L> {
     pub(super) fn best(&self) -> Option<Hit> {
         self.probe.best()
     }
+}
+
+/// Rays of which each meets a triangle for certain, by the axis along which they go: `f64` has to say where, of four
+/// at once.
+pub(super) struct Certain {
+    /// A ray's place, and the triangle's record.
+    along: [SmallVec<[(u32, u32); RAYS]>; 3],
+}
+
+impl Certain {
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        Self { along: [SmallVec::new(), SmallVec::new(), SmallVec::new()] }
+    }
+
+    /// Adds a ray along an axis, by its place.
+    #[inline(always)]
+    pub(super) fn push(&mut self, axis: Axis, place: usize, record: u32) {
+        self.along[axis as usize].push((place as u32, record));
+    }
+
+    /// The hits of all.
+    #[inline(always)]
+    pub(super) fn solve<L: Lanes>(
+        &self,
+        lanes: L,
+        wide: &Wide,
+        rays: &[Ray],
+        range: Interval,
+        hits: &mut [Option<Hit>],
+    ) {
+        for (axis, all) in [Axis::X, Axis::Y, Axis::Z].into_iter().zip(&self.along) {
+            for some in all.chunks(4) {
+                // Of fewer the last one as often as it takes.
+                let certain = |k: usize| some[k.min(some.len() - 1)];
+                let four = [certain(0), certain(1), certain(2), certain(3)];
+                let hits = &mut *hits;
+                // Apart, so that it is optimised by itself.
+                lanes.apart(
+                    #[inline(always)]
+                    move |lanes| solve_four(lanes, wide, rays, range, axis, four, hits),
+                );
+            }
+        }
+    }
+}
+
+/// The hits of four rays along one axis.
+#[inline(always)]
+fn solve_four<L: Lanes>(
+    l: L,
+    wide: &Wide,
+    rays: &[Ray],
+    range: Interval,
+    axis: Axis,
+    four: [(u32, u32); 4],
+    hits: &mut [Option<Hit>],
+) {
+    let [i, j, k, m] = four.map(|(place, _)| &rays[place as usize]);
+    // One by one: what maps an array is not sure to be inlined.
+    let triangle = |k: usize| wide.triangle(four[k].1);
+    let (of_i, of_j, of_k, of_m) = (triangle(0), triangle(1), triangle(2), triangle(3));
+    let ids = [of_i.0, of_j.0, of_k.0, of_m.0];
+    let corners = if ids == [ids[0]; 4] {
+        let [a, b, c] = wide.corners(of_i.1);
+        [gather(l, [a; 4]), gather(l, [b; 4]), gather(l, [c; 4])]
+    } else {
+        let ([a, b, c], [d, e, f]) = (wide.corners(of_i.1), wide.corners(of_j.1));
+        let ([g, h, n], [p, q, r]) = (wide.corners(of_k.1), wide.corners(of_m.1));
+        [gather(l, [a, d, g, p]), gather(l, [b, e, h, q]), gather(l, [c, f, n, r])]
+    };
+    let origin = gather(l, [i.origin, j.origin, k.origin, m.origin]);
+    let [a, b, c] = corners;
+    let corners = [relative(a, origin), relative(b, origin), relative(c, origin)];
+    let directions = gather(l, [i.direction, j.direction, k.direction, m.direction]);
+    let (t, [u, v, w]) = solve_triangle(corners, &Shear::along(axis, directions));
+    let (t, u, v, w) = (l.numbers(t), l.numbers(u), l.numbers(v), l.numbers(w));
+    for (lane, (place, _)) in four.into_iter().enumerate() {
+        let mut probe = Probe::new(wide.scene, &rays[place as usize], range);
+        let barycentric = DVec3::new(u[lane], v[lane], w[lane]);
+        probe.keep(Hit { t: t[lane], primitive: ids[lane], barycentric });
+        hits[place as usize] = probe.best();
+    }
+}
+
+/// The components of a vector.
+#[inline(always)]
+fn ones<L: Lanes>(l: L, DVec3 { x, y, z }: DVec3) -> [L::One; 3] {
+    [l.one(x), l.one(y), l.one(z)]
+}
+
+#[inline(always)]
+fn relative<T: Real>([x, y, z]: [T; 3], [ox, oy, oz]: [T; 3]) -> [T; 3] {
+    [x - ox, y - oy, z - oz]
 }
 
 /// The hit of one primitive, if it has one.

@@ -47,8 +47,8 @@ pub(super) trait Lanes: Copy {
     fn number(self, x: Self::One) -> f64;
     /// Eight `f64`, rounded.
     fn narrow(self, low: Self::D, high: Self::D) -> Self::F;
-    /// What `x` refers to, to be read where it is used: the compiler would broadcast a ray's numbers once and store
-    /// the lanes.
+    /// The same reference, of which the compiler does not know what it refers to: it reads that where it is used,
+    /// instead of broadcasting it beforehand and storing all lanes.
     fn read_here<T>(self, x: &T) -> &T;
     /// A number, read by itself and not together with its neighbours.
     fn read_alone(self, x: &f64) -> f64;
@@ -562,7 +562,7 @@ pub(super) mod avx2 {
         #[inline(always)]
         fn read_here<T>(self, x: &T) -> &T {
             let mut place = std::ptr::from_ref(x);
-            // SAFETY: no instruction changes the place; the compiler does not know.
+            // SAFETY: there is no instruction, so it is the same place.
             unsafe {
                 asm!("/* {0} */", inout(reg) place, options(readonly, nostack, preserves_flags));
                 &*place

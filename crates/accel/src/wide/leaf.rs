@@ -29,7 +29,7 @@ pub(super) const RECORD: usize = 4;
 ///
 /// # Panics
 /// If it is 2³⁰ or more.
-fn word_of(integer: u32) -> f32 {
+pub(super) fn word_of(integer: u32) -> f32 {
     assert!(integer < TAG, "`wide` takes no more than 2³⁰ triangles and corners");
     f32::from_bits(TAG | integer)
 }

@@ -8,6 +8,7 @@ mod filter;
 mod lanes;
 mod leaf;
 mod packet;
+mod ray;
 mod spheres;
 mod walk;
 
@@ -61,11 +62,11 @@ use leaf::{HEADER, RECORD, UNIT, integer_of};
 /// - Triangles are filtered eight at a time in `f32`, against *bounds* instead of 0: the filter keeps all that
 ///   `f64` might accept. Most that it keeps are *certain*: `f64` must accept them too, so they shorten
 ///   the ray at once, and a shadow ray ends there without any `f64`.
-/// - `f64` decides among the few that are left, at the end of the walk; what it will read is fetched when
-///   the filter keeps it. The answer is that of [`lancer_core::intersector::LinearScan`], bit for bit.
-/// - What a leaf needs, and what `f64` needs, is compiled apart from the walk through the nodes: most rays meet
-///   few leaves, and should not pay for them in registers. A certain hit is solved for t without the checks
-///   that it is known to pass.
+/// - `f64` decides among the few that are left, at the end of the walk. Nearly always that is one certain hit, of
+///   which four rays are solved at once where many are asked together, and the triangle that the ray leaves, whose
+///   plane it meets outside its range. The answer is that of [`lancer_core::intersector::LinearScan`], bit for bit.
+/// - The ray stays in memory, and what tests boxes in registers. A ray's own numbers are read one by one: most rays
+///   have been written just before.
 /// - Rays of one origin are walked as a packet, [`Intersector::closest_hits`]; what that gains is plate 4.9's.
 /// - Up to 64 primitives have no tree: `f64` asks them four at a time, or four rays at a time, by the formulas of
 ///   one, which stand once for any number of lanes ([`lancer_core::geometry::Real`]). So are the spheres of a leaf.

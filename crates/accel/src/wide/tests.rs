@@ -1,12 +1,13 @@
 use glam::DVec3;
 use lancer_core::generate::icosphere;
+use lancer_core::geometry::leave_surface;
 use lancer_core::intersector::{LinearScan, TestCounts};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 
 use super::lanes::Lanes;
 use super::packet::Packet;
-use super::walk::WideRay;
+use super::ray::WideRay;
 use super::*;
 use crate::four_boxes::FourSlabs;
 use crate::hard_sets::{hard_sets, triangles};
@@ -148,7 +149,7 @@ fn filter_first<L: Lanes>(lanes: L, wide: &Wide, ray: &Ray) -> Option<(FourSlabs
         Some((leaf, lane))
     })?;
     let words = wide.words(leaf);
-    let filtered = wide_ray.filter(words, leaf.count(), f32::INFINITY);
+    let filtered = wide_ray.filter(lanes, words, leaf.count(), f32::INFINITY);
     if filtered.kept >> lane & 1 == 0 {
         return None;
     }
@@ -240,6 +241,65 @@ fn a_packet_answers_as_brute_force() {
         }
     }
     assert!(together > 1000 && hits > 40 * 1000, "{together} {hits}");
+}
+
+/// Rays that have nothing in common, aimed at corners, edges and the inside of triangles, from the surface and from
+/// anywhere: alone and together they meet what they meet by brute force, also where each triangle is in two leaves.
+#[test]
+fn many_rays_answer_as_brute_force() {
+    let mut random = Pcg64::new(8, 4);
+    let mut number = move || f64::from(random.next_u32()) / f64::from(u32::MAX);
+    let mut mesh = icosphere(3);
+    mesh.append(&icosphere(2), glam::DAffine3::from_scale(DVec3::splat(0.5)), 0);
+    let once = mesh.triangles.len() as u32;
+    let copy = mesh.clone();
+    mesh.append(&copy, glam::DAffine3::IDENTITY, 0);
+    let scene = Scene::of_mesh(mesh);
+    let rays: Vec<Ray> = (0..4000)
+        .map(|k| {
+            let mut corners = || scene.mesh.corners((number() * f64::from(once)) as usize);
+            let ([a, b, c], [d, e, f]) = (corners(), corners());
+            let target = [a, (a + b) / 2.0, a * 0.3 + b * 0.3 + c * 0.4][k % 3];
+            let start = d * 0.2 + e * 0.5 + f * 0.3;
+            let normal = (e - d).cross(f - d).normalize();
+            let error = start.abs() * 1e-15;
+            let origin = match k / 3 % 3 {
+                0 => leave_surface(start, error, normal, target - start),
+                1 => d,
+                _ => 2.0 * start,
+            };
+            Ray::new(origin, target - origin)
+        })
+        .collect();
+    let oracle = LinearScan::new(&scene);
+    for kernel in kernels() {
+        let wide = Wide::with_kernel((&scene).into(), kernel);
+        let mut doubled = Wide::with_kernel((&scene).into(), kernel);
+        for child in doubled.nodes.clone().iter().flat_map(|node| node.children) {
+            for lane in (0..child.count()).filter(|_| child.is_leaf()) {
+                let record = Wide::record(child, lane) as usize;
+                let id = integer_of(doubled.leaves[record]);
+                doubled.leaves[record] = leaf::word_of(id % once);
+            }
+        }
+        for range in [Interval::POSITIVE, Interval::up_to(1.0), Interval::up_to(0.999)] {
+            let wanted: Vec<_> = rays.iter().map(|ray| oracle.closest_hit(ray, range)).collect();
+            assert!(wanted.iter().flatten().count() > 1000);
+            for wide in [&wide, &doubled] {
+                let alone: Vec<_> = rays.iter().map(|ray| wide.closest_hit(ray, range)).collect();
+                assert_eq!(difference(&alone, &wanted), None, "{kernel:?} {range:?}");
+                let mut together = vec![None; rays.len()];
+                wide.closest_hits(&rays, range, &mut together);
+                assert_eq!(difference(&together, &wanted), None, "{kernel:?} {range:?}");
+                let mut occluded = vec![false; rays.len()];
+                wide.occluded_all(&rays, range, &mut occluded);
+                for ((ray, occluded), wanted) in rays.iter().zip(occluded).zip(&wanted) {
+                    assert_eq!(occluded, wanted.is_some(), "{kernel:?} {ray:?} {range:?}");
+                    assert_eq!(wide.occluded(ray, range), occluded, "{kernel:?} {ray:?}");
+                }
+            }
+        }
+    }
 }
 
 /// The first answer that is wrong, and the right one.

@@ -21,7 +21,8 @@ impl<'p, L: Lanes> Packet<'p, '_, L> {
         let frame = &self.wide.frame;
         let origin = frame.point(first.origin);
         let direction = first.direction.to_array();
-        let last = Axis::longest(first.direction) as usize;
+        let axis = Axis::longest(first.direction);
+        let last = axis as usize;
         let axes = [(last + 1) % 3, (last + 2) % 3, last];
         let sign = direction[last].signum();
         let is_near = origin.abs().max_element() <= FARTHEST && frame.moved == 0.0;
@@ -91,6 +92,7 @@ impl<'p, L: Lanes> Packet<'p, '_, L> {
         }
         let steepest = low.iter().chain(&high).fold(1.0_f32, |most, slope| most.max(slope.abs()));
         self.rays = rays;
+        self.axis = (low.iter().chain(&high).all(|slope| slope.abs() < 1.0)).then_some(axis);
         self.axes = axes;
         self.sign = sign as f32;
         self.spread = Spread::between(low, high);

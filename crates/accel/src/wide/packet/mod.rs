@@ -5,7 +5,7 @@ mod answer;
 
 use std::ops::ControlFlow;
 
-use lancer_core::geometry::{Interval, Ray};
+use lancer_core::geometry::{Axis, Interval, Ray};
 use lancer_core::intersector::Hit;
 use lancer_core::scene::Shape;
 use smallvec::SmallVec;
@@ -16,14 +16,17 @@ use super::lanes::{Lanes, Vectors, cross, dot, most, splat3, sub3};
 use super::leaf::HEADER;
 use super::walk::{self, Walker};
 use super::{Child, Node, Wide};
+use crate::pending::Lanes as Bits;
 
 /// Rays of a packet at most: 8 × 8 pixels.
-const RAYS: usize = 64;
+pub(super) const RAYS: usize = 64;
 const VECTORS: usize = RAYS / WIDTH;
 /// A packet pays where a triangle is at least this part of the packet wide.
 const WIDEST: f64 = 0.25;
 /// With more work than this each ray goes alone: about what all of them cost alone.
 const MOST_WORK: usize = 16 * RAYS;
+/// With no more than this the next packet surely pays.
+const LITTLE_WORK: usize = 4 * RAYS;
 /// So many packets go alone without being asked after one that did not pay.
 const PAUSE: usize = 3;
 /// Hits that cannot be told apart in `f32`, at most; with more of them each ray goes alone.
@@ -39,15 +42,16 @@ pub(super) fn closest<L: Lanes>(
     hits: &mut [Option<Hit>],
 ) {
     let mut packet = Packet::new(lanes, wide, range);
-    let mut pause = 0;
+    let (mut pause, mut paid) = (0, false);
     for (rays, hits) in rays.chunks(RAYS).zip(hits.chunks_mut(RAYS)) {
         if pause > 0 {
             pause -= 1;
-        } else if packet.aim(rays) && packet.pays() && packet.walk() {
+        } else if packet.aim(rays) && (paid || packet.pays()) && packet.walk() {
             packet.answer(hits);
+            paid = packet.spent <= LITTLE_WORK;
             continue;
         } else {
-            pause = PAUSE;
+            (pause, paid) = (PAUSE, false);
         }
         walk::closest_each(lanes, wide, rays, range, hits);
     }
@@ -74,6 +78,8 @@ pub(super) struct Packet<'p, 's, L: Lanes> {
     wide: &'p Wide<'s>,
     rays: &'p [Ray],
     range: Interval,
+    /// Along which all rays are longest, if they are for sure.
+    axis: Option<Axis>,
     /// The axes of p, q and depth.
     axes: [usize; 3],
     sign: f32,
@@ -126,6 +132,7 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
             wide,
             rays: &[],
             range,
+            axis: None,
             axes: [0, 1, 2],
             sign: 1.0,
             spread: Spread::between([0.0; 2], [0.0; 2]),
@@ -224,18 +231,17 @@ impl<'p, 's, L: Lanes> Packet<'p, 's, L> {
         self.lowest[vector] = l.store(l.select(nearer, lowest, before));
         let shorter = certain & l.above(max, highest);
         self.max[vector] = l.store(l.select(shorter, highest, max));
-        let mut nearer_left = nearer;
-        while nearer_left != 0 {
-            let lane = nearer_left.trailing_zeros() as usize % WIDTH;
-            nearer_left &= nearer_left - 1;
+        for lane in Bits::<WIDTH>(nearer) {
             self.best[vector][lane] = triangle.record;
         }
-        let mut doubtful = filtered.kept & !nearer;
-        self.doubtful |= u64::from(doubtful) << (vector * WIDTH);
-        while doubtful != 0 {
-            let lane = doubtful.trailing_zeros() as usize % WIDTH;
-            doubtful &= doubtful - 1;
-            self.doubts.push(((vector * WIDTH + lane) as u64) << 32 | u64::from(triangle.record));
+        for lane in Bits::<WIDTH>(filtered.kept & !nearer) {
+            let (ray, best) = (vector * WIDTH + lane, self.best[vector][lane]);
+            // The same triangle in another leaf is no rival.
+            if best != NONE && self.wide.triangle(best).0 == self.wide.triangle(triangle.record).0 {
+                continue;
+            }
+            self.doubtful |= 1 << ray;
+            self.doubts.push((ray as u64) << 32 | u64::from(triangle.record));
         }
         shorter != 0
     }
@@ -306,7 +312,7 @@ impl<L: Lanes> Walker<L> for Packet<'_, '_, L> {
             middle: [l.splat(self.spread.middle[0]), l.splat(self.spread.middle[1])],
             half: [l.splat(self.spread.half[0]), l.splat(self.spread.half[1])],
         };
-        let mut met = spread.may_meet(l, [u, v, det], bounds) & ((1 << count) - 1);
+        let met = spread.may_meet(l, [u, v, det], bounds) & ((1 << count) - 1);
         if met == 0 {
             return ControlFlow::Continue(());
         }
@@ -316,9 +322,7 @@ impl<L: Lanes> Walker<L> for Packet<'_, '_, L> {
             *row = l.store(x);
         }
         let mut found = false;
-        while met != 0 {
-            let lane = met.trailing_zeros() as usize % WIDTH;
-            met &= met - 1;
+        for lane in Bits::<WIDTH>(met) {
             let triangle = Triangle {
                 u: [rows[0][lane], rows[1][lane], rows[2][lane]],
                 v: [rows[3][lane], rows[4][lane], rows[5][lane]],
@@ -327,10 +331,7 @@ impl<L: Lanes> Walker<L> for Packet<'_, '_, L> {
                 bounds: self.bounds.of(l, words, l.splat(rows[10][lane])),
                 record: Wide::record(leaf, lane),
             };
-            let mut vectors = self.vectors_that_may_meet(&triangle);
-            while vectors != 0 {
-                let vector = vectors.trailing_zeros() as usize % VECTORS;
-                vectors &= vectors - 1;
+            for vector in Bits::<VECTORS>(self.vectors_that_may_meet(&triangle)) {
                 self.spent += 1;
                 if self.doubts.len() + WIDTH > DOUBTS {
                     return ControlFlow::Break(());
