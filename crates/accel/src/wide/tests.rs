@@ -190,6 +190,10 @@ fn a_packet_answers_as_brute_force() {
         }
         let scene = Scene::of_mesh(mesh);
         let oracle = LinearScan::new(&scene);
+        let trees: Vec<_> = kernels()
+            .into_iter()
+            .map(|kernel| (kernel, Wide::tree((&scene).into(), kernel)))
+            .collect();
         for k in 0..300 {
             let mut vector = || DVec3::new(number(), number(), number()) * 2.0 - 1.0;
             let place = vector();
@@ -222,15 +226,14 @@ fn a_packet_answers_as_brute_force() {
             {
                 let wanted: Vec<_> =
                     rays.iter().map(|ray| oracle.closest_hit(ray, range)).collect();
-                for kernel in kernels() {
-                    let wide = Wide::tree((&scene).into(), kernel);
+                for (kernel, wide) in &trees {
                     let mut got = vec![None; rays.len()];
                     wide.closest_hits(&rays, range, &mut got);
                     assert_eq!(difference(&got, &wanted), None, "{k} {kernel:?} {range:?}");
-                    let answered = match kernel {
+                    let answered = match *kernel {
                         #[cfg(target_arch = "x86_64")]
-                        Kernel::Avx2(lanes) => packet(lanes, &wide, &rays, range),
-                        Kernel::Scalar(lanes) => packet(lanes, &wide, &rays, range),
+                        Kernel::Avx2(lanes) => packet(lanes, wide, &rays, range),
+                        Kernel::Scalar(lanes) => packet(lanes, wide, &rays, range),
                     };
                     let Some(answered) = answered else { continue };
                     together += 1;
