@@ -9,7 +9,8 @@ use lancer_core::scene::Mesh;
 
 use super::refined;
 use super::shapes::{
-    placed, post, push_cuboid, push_moulding, push_panel, push_quad, revolved, rod, sheet, tube,
+    ball, placed, post, push_cuboid, push_moulding, push_panel, push_quad, revolved, rod, sheet,
+    tube,
 };
 
 /// In the nave, near one end.
@@ -332,6 +333,12 @@ fn hangings(mesh: &mut Mesh, detail: f64) {
             )
         });
         mesh.append(&banner, DAffine3::IDENTITY, 0);
+        let bead = ball((3.0 * detail).round(), DVec3::ZERO, 0.012);
+        for k in 0..8 {
+            let along = 1.9 * (f64::from(k) / 7.0 - 0.5);
+            let place = [x + along, GALLERY + 0.665, z - 0.1 * side];
+            mesh.append(&bead, placed(place, 0.0), 0);
+        }
         let bar = [-1.0, 1.0].map(|end| at(x + end, GALLERY + 0.71, z - 0.1 * side));
         mesh.append(&rod((6.0 * detail).round(), bar, 0.03), DAffine3::IDENTITY, 0);
         if bay % 2 == 0 {

@@ -550,5 +550,17 @@ fn laid_table(mesh: &mut Mesh, detail: f64) {
         let center = DVec3::new(radius * cos, 0.83 - 0.3 * radius, radius * sin);
         table.append(&ball((6.0 * detail).round(), center, 0.036), DAffine3::IDENTITY, 0);
     }
+    // A saucer of peas.
+    table.append(
+        &plate,
+        placed([0.3, 0.73, 0.05], 0.0) * DAffine3::from_scale(DVec3::splat(0.6)),
+        0,
+    );
+    let pea = ball((3.0 * detail).round(), DVec3::ZERO, 0.0025);
+    for k in 0..50 {
+        let radius = 0.045 * (f64::from(k) / 50.0).sqrt();
+        let (sin, cos) = (f64::from(k) * TAU * 0.382).sin_cos();
+        table.append(&pea, placed([0.3 + radius * cos, 0.736, 0.05 + radius * sin], 0.0), 0);
+    }
     mesh.append(&table, to_room, 0);
 }

@@ -143,12 +143,19 @@ impl Family {
     }
 }
 
-/// A mesh of about `count` triangles whose curved parts are cut the finer the larger `detail` is: their number grows
-/// with its square.
+/// A mesh of about `count` triangles, whose curved parts are cut the finer the larger `detail` is.
 fn refined(count: u32, mesh: impl Fn(f64) -> Mesh) -> Mesh {
-    let [once, twice] = [1.0, 2.0].map(|detail| mesh(detail).triangles.len() as f64);
-    let curved = (twice - once) / 3.0;
-    mesh(((f64::from(count) - once) / curved + 1.0).max(0.01).sqrt())
+    let mut detail = 1.0;
+    for _ in 0..6 {
+        let mesh = mesh(detail);
+        let growth = f64::from(count) / mesh.triangles.len() as f64;
+        if (0.98..1.02).contains(&growth) {
+            return mesh;
+        }
+        // Both ways of a surface are cut finer; what is flat is not, so that a step is too short at worst.
+        detail = (detail * growth.sqrt()).max(0.05);
+    }
+    mesh(detail)
 }
 
 /// Triangles evenly spread over a cube, as large as the distance to their neighbours.

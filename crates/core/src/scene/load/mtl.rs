@@ -14,8 +14,7 @@ pub(super) type NamedMaterials = Vec<(String, Material)>;
 
 /// The materials of all libraries of one OBJ file.
 ///
-/// Read here and not by tobj, which panics on short colours, names no line, and keeps two materials
-/// of one name.
+/// The first of two materials of one name counts.
 #[derive(Default)]
 pub(super) struct Library {
     entries: Vec<Entry>,

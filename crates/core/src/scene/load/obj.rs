@@ -3,11 +3,11 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::check::{excerpt, is_in_space, within_limit};
+use super::check::{is_in_space, within_limit};
 use super::clean::Lines;
 use super::mtl::{Library, NamedMaterials};
 use super::report::{LoadError, WarningKind, Warnings};
-use super::statements::{Record, Statements};
+use super::statements::{self, Record};
 use super::{DEFAULT_GREY, MAX_COORDINATE, MAX_COUNT, Open, UNNAMED};
 use crate::geometry::triangulate;
 use crate::scene::counts::is_zero_area;
@@ -24,9 +24,6 @@ pub(super) enum Materials {
 
 /// Reads an OBJ file and its material libraries; materials come with their names. If they are replaced there are
 /// none, and all faces have the number 0.
-///
-/// tobj reads positions and the vertices of faces. Everything else (normals, materials, groups, libraries) is
-/// kept from it and recorded, so that it returns one model whose faces share their vertices.
 pub(super) fn read_obj(
     path: &Path,
     materials: Materials,
@@ -35,17 +32,8 @@ pub(super) fn read_obj(
 ) -> Result<(Mesh, NamedMaterials), LoadError> {
     let file = path.display().to_string();
     let source = Source { path, file: &file, open };
-    let mut statements = Statements::new(&file, source.open()?, warnings)?;
-    let options = tobj::LoadOptions { single_index: false, ..Default::default() };
-    // Libraries are recorded instead of handed to tobj, so its loader of materials is never called.
-    let parsed = tobj::load_obj_buf(&mut statements, &options, |_| Ok(Default::default()));
-    let model = match (statements.error.take(), parsed) {
-        (Some(error), _) => return Err(error),
-        (None, Err(error)) => return Err(source.explain(error, &statements)),
-        (None, Ok((models, _))) => models.into_iter().next().map(|m| m.mesh).unwrap_or_default(),
-    };
-    let mut record = statements.record;
-    if model.indices.is_empty() {
+    let mut record = statements::read(&file, source.open()?, warnings)?;
+    if record.corners.is_empty() {
         return Err(LoadError::at(
             &file,
             None,
@@ -60,7 +48,7 @@ pub(super) fn read_obj(
         }
         Materials::Replaced => (Vec::new(), vec![MaterialId(0); record.runs.len()]),
     };
-    let mesh = source.build_mesh(&model, &mut record, &run_materials, warnings)?;
+    let mesh = source.build_mesh(&mut record, &run_materials, warnings)?;
     Ok((mesh, materials))
 }
 
@@ -105,18 +93,6 @@ impl<'a> Source<'a> {
             .map_err(|reason| LoadError::Unreadable { file: self.file.to_owned(), reason })
     }
 
-    /// tobj's error as ours: it stopped at the line it was given last.
-    fn explain(&self, error: tobj::LoadError, statements: &Statements<'_, '_>) -> LoadError {
-        let line = excerpt(&statements.line);
-        let (problem, cure) = if error == tobj::LoadError::ScalingByZeroError {
-            (format!("`{line}` has the weight 0"), "remove the fourth number")
-        } else {
-            let cure = "write three numbers, with a decimal point";
-            (format!("`{line}` cannot be read"), cure)
-        };
-        LoadError::at(self.file, statements.number, problem, cure)
-    }
-
     /// The first line whose keyword and numbers are `wanted`.
     fn find_line(&self, mut wanted: impl FnMut(&str, &str) -> bool) -> Option<usize> {
         let mut lines = Lines::new(self.file, self.open().ok()?).ok()?;
@@ -150,13 +126,11 @@ impl<'a> Source<'a> {
 
     fn build_mesh(
         &self,
-        model: &tobj::Mesh,
         record: &mut Record,
         materials: &[MaterialId],
         warnings: &mut Warnings,
     ) -> Result<Mesh, LoadError> {
-        let positions: Vec<DVec3> =
-            model.positions.chunks_exact(3).map(DVec3::from_slice).collect();
+        let positions = record.used_positions();
         if !positions.iter().copied().all(is_in_space) {
             return Err(LoadError::at(
                 self.file,
@@ -165,12 +139,8 @@ impl<'a> Source<'a> {
                 "correct the number",
             ));
         }
-        let faces = if model.face_arities.is_empty() {
-            model.indices.len() / 3
-        } else {
-            model.face_arities.len()
-        };
-        let triangles = model.indices.len() - 2 * faces;
+        let faces = record.arities.len();
+        let triangles = record.corners.len() - 2 * faces;
         within_limit(triangles, "triangles", MAX_COUNT, "split the model")
             .map_err(|(problem, cure)| LoadError::at(self.file, None, problem, cure))?;
         let mut mesh = Mesh { positions, ..Mesh::default() };
@@ -186,12 +156,12 @@ impl<'a> Source<'a> {
         let (mut polygon, mut parts, mut normals) = (Vec::new(), Vec::new(), Vec::new());
         let (mut start, mut run, mut any_smooth) = (0, 0, false);
         let mut corner_normals = record.corner_normals.iter();
-        for face in 0..faces {
-            let end = start + model.face_arities.get(face).map_or(3, |&arity| arity as usize);
+        for (face, &arity) in record.arities.iter().enumerate() {
+            let end = start + arity as usize;
             while runs.get(run + 1).is_some_and(|next| next.first_face <= face) {
                 run += 1;
             }
-            let corners = &model.indices[start..end];
+            let corners = &record.corners[start..end];
             polygon.clear();
             polygon.extend(corners.iter().map(|&vertex| mesh.positions[vertex as usize]));
             parts.clear();

@@ -1,10 +1,10 @@
 use std::collections::HashMap;
-use std::io::{self, BufRead, Read};
+use std::io::Read;
 
 use glam::DVec3;
 
 use super::check::{Problem, excerpt, within_limit};
-use super::clean::Lines;
+use super::clean::{Lines, words};
 use super::report::{LoadError, WarningKind, Warnings};
 use super::{MAX_CORNERS, MAX_COUNT};
 
@@ -17,11 +17,17 @@ pub(super) struct Run {
     pub with_normals: bool,
 }
 
-/// What the lines say beyond the numbers that tobj reads.
+/// What the lines say.
 #[derive(Default)]
 pub(super) struct Record {
     vertices: usize,
     faces: usize,
+    /// Of the `v` lines.
+    pub positions: Vec<DVec3>,
+    /// The corners of all faces, as indices into `positions`.
+    pub corners: Vec<u32>,
+    /// The number of corners of each face.
+    pub arities: Vec<u32>,
     pub runs: Vec<Run>,
     /// Of the `vn` lines those that have a direction, of unit length.
     pub normals: Vec<DVec3>,
@@ -39,150 +45,56 @@ pub(super) struct Record {
     last_vertex: (usize, usize),
 }
 
-/// Feeds tobj the positions and the vertices of the faces of a file, and records what else it says.
-pub(super) struct Statements<'a, 'w> {
+/// Reads the statements of a file to its end.
+pub(super) fn read<'a>(
     file: &'a str,
-    lines: Lines<'a>,
-    warnings: &'w mut Warnings,
-    pub record: Record,
-    names: HashMap<String, usize>,
-    /// The line tobj is reading, and how much of it tobj has taken.
-    pub line: String,
-    taken: usize,
-    pub number: usize,
-    /// Why reading stopped.
-    pub error: Option<LoadError>,
-}
-
-impl<'a, 'w> Statements<'a, 'w> {
-    pub fn new(
-        file: &'a str,
-        source: Box<dyn Read + 'a>,
-        warnings: &'w mut Warnings,
-    ) -> Result<Self, LoadError> {
-        Ok(Self {
-            file,
-            lines: Lines::new(file, source)?,
-            warnings,
-            record: Record::default(),
-            names: HashMap::new(),
-            line: String::new(),
-            taken: 0,
-            number: 0,
-            error: None,
-        })
-    }
-
-    /// Reads on to the next line for tobj; leaves `line` empty at the end of the file.
-    fn advance(&mut self) -> Result<(), LoadError> {
-        self.line.clear();
-        self.taken = 0;
-        while let Some((number, line)) = self.lines.next()? {
-            let statement = line.trim_start();
-            let (keyword, rest) =
-                statement.split_once(char::is_whitespace).unwrap_or((statement, ""));
-            let numbers = rest.split('#').next().unwrap_or_default();
-            let invalid =
-                |(problem, cure): Problem| LoadError::at(self.file, number, problem, cure);
-            let for_tobj = match keyword {
-                "v" => {
-                    self.record.count_vertex().map_err(invalid)?;
-                    true
-                }
-                "vn" => {
-                    self.record.add_normal(numbers).map_err(invalid)?;
-                    false
-                }
-                "f" => match self.record.face(number, numbers).map_err(invalid)? {
-                    None => true,
-                    Some(FaceDefect::TooFewCorners) => {
-                        self.warnings.add(self.file, number, WarningKind::TooFewCorners);
-                        false
-                    }
-                    Some(FaceDefect::PartialNormals) => {
-                        self.warnings.add(self.file, number, WarningKind::PartialNormals);
-                        true
-                    }
-                },
-                "usemtl" => {
-                    self.record.use_material(&mut self.names, number, rest.trim());
-                    false
-                }
-                "mtllib" => {
-                    self.record.libraries.push((rest.trim().to_owned(), number));
-                    false
-                }
-                "l" | "p" | "curv" | "curv2" | "surf" => {
-                    self.warnings.add(self.file, number, WarningKind::NotAFace);
-                    false
-                }
-                _ => {
-                    if !(keyword.is_empty()
-                        || keyword.starts_with('#')
-                        || SILENT.contains(&keyword))
-                    {
-                        self.warnings.add(self.file, number, WarningKind::UnknownStatement);
-                    }
-                    false
-                }
-            };
-            if for_tobj {
-                self.number = number;
-                self.line.push_str(keyword);
-                if keyword == "f" {
-                    for corner in numbers.split_whitespace() {
-                        let vertex = corner.split('/').next().unwrap_or_default();
-                        self.line.extend([" ", vertex]);
-                    }
-                } else if numbers.split_whitespace().nth(4).is_some() {
-                    self.warnings.add(self.file, number, WarningKind::VertexColors);
-                    for coordinate in numbers.split_whitespace().take(3) {
-                        self.line.extend([" ", coordinate]);
-                    }
-                } else {
-                    self.line.extend([" ", numbers]);
-                }
-                self.line.push('\n');
-                return Ok(());
+    source: Box<dyn Read + 'a>,
+    warnings: &mut Warnings,
+) -> Result<Record, LoadError> {
+    let mut lines = Lines::new(file, source)?;
+    let mut record = Record::default();
+    let mut names = HashMap::new();
+    while let Some((number, line)) = lines.next()? {
+        let statement = line.trim_start();
+        let (keyword, rest) = statement.split_once(char::is_whitespace).unwrap_or((statement, ""));
+        let numbers = rest.split('#').next().unwrap_or_default();
+        let invalid = |(problem, cure): Problem| LoadError::at(file, number, problem, cure);
+        let finding = match keyword {
+            "v" => record.vertex(numbers).map_err(invalid)?,
+            "vn" => {
+                record.add_normal(numbers).map_err(invalid)?;
+                None
             }
+            "f" => record.face(number, numbers).map_err(invalid)?,
+            "usemtl" => {
+                record.use_material(&mut names, number, rest.trim());
+                None
+            }
+            "mtllib" => {
+                record.libraries.push((rest.trim().to_owned(), number));
+                None
+            }
+            "l" | "p" | "curv" | "curv2" | "surf" => Some(WarningKind::NotAFace),
+            _ if keyword.is_empty() || keyword.starts_with('#') || SILENT.contains(&keyword) => {
+                None
+            }
+            _ => Some(WarningKind::UnknownStatement),
+        };
+        if let Some(finding) = finding {
+            warnings.add(file, number, finding);
         }
-        self.record
-            .check_last_vertex()
-            .map_err(|(line, (problem, cure))| LoadError::at(self.file, line, problem, cure))
     }
+    record
+        .check_last_vertex()
+        .map_err(|(line, (problem, cure))| LoadError::at(file, line, problem, cure))?;
+    Ok(record)
 }
 
-impl Read for Statements<'_, '_> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = self.fill_buf()?.read(buffer)?;
-        self.consume(count);
-        Ok(count)
-    }
-}
-
-impl BufRead for Statements<'_, '_> {
-    fn fill_buf(&mut self) -> io::Result<&[u8]> {
-        if self.taken == self.line.len()
-            && let Err(error) = self.advance()
-        {
-            self.error = Some(error);
-            return Err(io::ErrorKind::InvalidData.into());
-        }
-        Ok(&self.line.as_bytes()[self.taken..])
-    }
-
-    fn consume(&mut self, count: usize) {
-        self.taken += count;
-    }
-}
+/// No index of a vertex: there are at most [`MAX_COUNT`].
+const UNUSED: u32 = MAX_COUNT as u32;
 
 /// Statements of an OBJ that change nothing in a picture of this course.
 const SILENT: [&str; 8] = ["vt", "vp", "g", "o", "s", "mg", "call", "csh"];
-
-enum FaceDefect {
-    TooFewCorners,
-    PartialNormals,
-}
 
 impl Record {
     fn count_vertex(&mut self) -> Result<(), Problem> {
@@ -190,16 +102,61 @@ impl Record {
         within_limit(self.vertices, "vertices", MAX_COUNT, "split the model")
     }
 
+    /// Keeps the position of a `v` line: three numbers, and a fourth by which they are divided. Colours may follow instead.
+    fn vertex(&mut self, numbers: &str) -> Result<Option<WarningKind>, Problem> {
+        self.count_vertex()?;
+        let mut words = words(numbers);
+        let [x, y, z, weight, color] = std::array::from_fn(|_| words.next());
+        let finding = color.map(|_| WarningKind::VertexColors);
+        let unreadable = || {
+            let shown = match (x, y, z, color) {
+                (Some(x), Some(y), Some(z), Some(_)) => format!("v {x} {y} {z}"),
+                _ => format!("v {numbers}"),
+            };
+            let problem = format!("`{}` cannot be read", excerpt(&shown));
+            (problem, "write three numbers, with a decimal point")
+        };
+        let number = |word: Option<&str>| word.and_then(|word| word.parse::<f64>().ok());
+        let [Some(x), Some(y), Some(z)] = [x, y, z].map(number) else { return Err(unreadable()) };
+        let mut position = DVec3::new(x, y, z);
+        if weight.is_some() && color.is_none() {
+            let weight = number(weight).ok_or_else(unreadable)?;
+            if weight == 0.0 {
+                let problem = format!("`{}` has the weight 0", excerpt(&format!("v {numbers}")));
+                return Err((problem, "remove the fourth number"));
+            }
+            position /= weight;
+        }
+        self.positions.push(position);
+        Ok(finding)
+    }
+
     /// Keeps the normal of a `vn` line if it has a direction.
     fn add_normal(&mut self, numbers: &str) -> Result<(), Problem> {
         let lines = self.normal_indices.len() + 1;
         within_limit(lines, "normals", MAX_COUNT, "split the model")?;
         let numbers: Vec<f64> =
-            numbers.split_whitespace().take(3).map_while(|word| word.parse().ok()).collect();
+            words(numbers).take(3).map_while(|word| word.parse().ok()).collect();
         let normal = if numbers.len() == 3 { unit(DVec3::from_slice(&numbers)) } else { None };
         self.normal_indices.push(normal.map(|_| self.normals.len() as u32));
         self.normals.extend(normal);
         Ok(())
+    }
+
+    /// Takes the positions that faces use, in the order of their first use, and numbers the corners accordingly.
+    pub fn used_positions(&mut self) -> Vec<DVec3> {
+        let all = std::mem::take(&mut self.positions);
+        let mut used = Vec::with_capacity(all.len());
+        let mut numbers = vec![UNUSED; all.len()];
+        for corner in &mut self.corners {
+            let number = &mut numbers[*corner as usize];
+            if *number == UNUSED {
+                *number = used.len() as u32;
+                used.push(all[*corner as usize]);
+            }
+            *corner = *number;
+        }
+        used
     }
 
     /// The index into `normals` of the `vn` line of this number, if it exists and has a direction.
@@ -207,25 +164,21 @@ impl Record {
         *self.normal_indices.get((number as usize).checked_sub(1)?)?
     }
 
-    /// Checks and counts the face `corners`: tobj does not name the line of a bad index.
-    fn face(&mut self, line: usize, corners: &str) -> Result<Option<FaceDefect>, Problem> {
-        let count = corners.split_whitespace().count();
+    /// Keeps the face of an `f` line, if it has three corners.
+    fn face(&mut self, line: usize, corners: &str) -> Result<Option<WarningKind>, Problem> {
+        let (first_corner, first_normal) = (self.corners.len(), self.corner_normals.len());
+        let last_vertex = self.last_vertex;
+        let read = self.read_corners(line, corners);
+        // How many there are is said before what is wrong with one.
+        let count = read.as_ref().map_or_else(|_| words(corners).count(), |&count| count);
         within_limit(count, "corners in one face", MAX_CORNERS, "split the face")?;
         if count < 3 {
-            return Ok(Some(FaceDefect::TooFewCorners));
+            self.corners.truncate(first_corner);
+            self.corner_normals.truncate(first_normal);
+            self.last_vertex = last_vertex;
+            return Ok(Some(WarningKind::TooFewCorners));
         }
-        let first_normal = self.corner_normals.len();
-        for corner in corners.split_whitespace() {
-            let mut parts = corner.split('/');
-            let vertex = vertex_index(parts.next().unwrap_or_default(), corner, self.vertices)?;
-            if vertex > self.last_vertex.0 {
-                self.last_vertex = (vertex, line);
-            }
-            // The part between is a texture's.
-            if let Some(normal) = parts.nth(1).filter(|normal| !normal.is_empty()) {
-                self.corner_normals.push(normal_number(normal, self.normal_indices.len()));
-            }
-        }
+        read?;
         let named = self.corner_normals.len() - first_normal;
         let with_normals = named == count;
         if !with_normals {
@@ -236,9 +189,29 @@ impl Record {
         if !self.runs.last().is_some_and(continues) {
             self.runs.push(Run { first_face: self.faces, material: self.material, with_normals });
         }
+        self.arities.push(count as u32);
         self.faces += 1;
         within_limit(self.faces, "faces", MAX_COUNT, "split the model")?;
-        Ok((named > 0 && !with_normals).then_some(FaceDefect::PartialNormals))
+        Ok((named > 0 && !with_normals).then_some(WarningKind::PartialNormals))
+    }
+
+    /// Appends corners and their normals, and counts the corners.
+    fn read_corners(&mut self, line: usize, corners: &str) -> Result<usize, Problem> {
+        let first = self.corners.len();
+        for corner in words(corners) {
+            let (vertex, others) = split_at_slash(corner);
+            let vertex = vertex_index(vertex, corner, self.vertices)?;
+            if vertex > self.last_vertex.0 {
+                self.last_vertex = (vertex, line);
+            }
+            self.corners.push((vertex - 1) as u32);
+            // The part between is a texture's.
+            let normal = others.and_then(|others| split_at_slash(others).1).map(split_at_slash);
+            if let Some((normal, _)) = normal.filter(|(normal, _)| !normal.is_empty()) {
+                self.corner_normals.push(normal_number(normal, self.normal_indices.len()));
+            }
+        }
+        Ok(self.corners.len() - first)
     }
 
     fn use_material(&mut self, names: &mut HashMap<String, usize>, line: usize, name: &str) {
@@ -256,6 +229,14 @@ impl Record {
             return Err((line, out_of_range(&last.to_string(), self.vertices)));
         }
         Ok(())
+    }
+}
+
+/// What stands before the first slash, and behind it if there is one.
+fn split_at_slash(text: &str) -> (&str, Option<&str>) {
+    match text.bytes().position(|byte| byte == b'/') {
+        Some(slash) => (&text[..slash], Some(&text[slash + 1..])),
+        None => (text, None),
     }
 }
 
