@@ -102,7 +102,8 @@ impl Record {
         within_limit(self.vertices, "vertices", MAX_COUNT, "split the model")
     }
 
-    /// Keeps the position of a `v` line: three numbers, and a fourth by which they are divided. Colours may follow instead.
+    /// Keeps the position of a `v` line: three numbers, and a fourth by which they are divided, or colours, which are
+    /// passed over.
     fn vertex(&mut self, numbers: &str) -> Result<Option<WarningKind>, Problem> {
         self.count_vertex()?;
         let mut words = words(numbers);
