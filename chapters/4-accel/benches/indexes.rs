@@ -8,7 +8,7 @@ use std::hint::black_box;
 use std::path::{Path, PathBuf};
 
 use chapter_4::rays::Rays;
-use chapter_4::scenes::FAMILIES;
+use chapter_4::scenes::{BUILDINGS, FAMILIES};
 use criterion::{Criterion, Throughput};
 use lancer_accel::structures::STRUCTURES;
 use lancer_core::image::ImageSize;
@@ -29,8 +29,9 @@ fn arguments() -> (Option<PathBuf>, Vec<String>) {
 
 /// Generated scenes, and the models of a folder.
 fn scenes(models: Option<&Path>) -> Vec<(String, Scene)> {
+    let families = FAMILIES.into_iter().chain(BUILDINGS);
     let mut scenes: Vec<_> =
-        FAMILIES.map(|family| (family.name.to_owned(), family.scene(100_000))).into();
+        families.map(|family| (family.name.to_owned(), family.scene(100_000))).collect();
     let mut files: Vec<_> = models.map_or_else(Vec::new, |folder| {
         let entries = std::fs::read_dir(folder).expect("--models names a folder");
         entries.map(|entry| entry.expect("an entry").path()).collect()

@@ -252,7 +252,7 @@ fn wrong_scenes_are_refused_with_a_cure() {
         refusals(&folder, lines)
     };
     assert_snapshot!(refused(&["witted", "flake:99", "flake:x", "room:2"]), @r"
-    error: unknown scene `witted`; known: whitted, flake, town, room, gears, soup, scan, horizon, tetrahedra, stadium; or name a .toml or .obj file
+    error: unknown scene `witted`; known: whitted, kitchen, flake, town, room, gears, soup, scan, atrium, horizon, tetrahedra, stadium; or name a .toml or .obj file
     error: flake:99: the level is a number from 0 to 7
     error: flake:x: the level is a number from 0 to 7
     error: room: only generated scenes have a level; leave it out

@@ -1,12 +1,19 @@
-//! Scenes of any number of triangles, and of the kinds that tell structures apart.
+//! Scenes of any number of triangles: of the kinds that tell structures apart, and buildings.
+
+mod atrium;
+mod kitchen;
+mod shapes;
 
 use anyhow::{Context, Result};
-use glam::{DAffine3, DMat3, DVec2, DVec3};
+use glam::{DAffine3, DVec3};
 use lancer_core::Rgb;
 use lancer_core::sampling::Uniform;
 use lancer_core::scene::load::{Loaded, UNNAMED};
 use lancer_core::scene::{Camera, MaterialId, Mesh, PointLight, Scene};
 use lancer_lesson::scenes::{NamedScene, Source};
+
+pub use shapes::teapot;
+use shapes::{push_quad, surface};
 
 /// A kind of scene.
 #[derive(Clone, Copy)]
@@ -15,6 +22,8 @@ pub struct Family {
     pub name: &'static str,
     /// What it is.
     pub about: &'static str,
+    /// How many triangles it has unless another number is asked for.
+    pub usual: u32,
     /// A mesh of about that many triangles.
     pub mesh: fn(u32) -> Mesh,
     /// From where it is seen: the direction to the eye, and whether the eye is inside.
@@ -27,28 +36,58 @@ enum View {
     Framed,
     /// From a point, towards another.
     From(DVec3, DVec3),
+    /// The same in a room, with a wider angle.
+    Within(DVec3, DVec3),
 }
 
-/// All kinds.
+/// The kinds that tell structures apart.
 pub const FAMILIES: [Family; 4] = [
     Family {
         name: "soup",
         about: "small triangles, evenly spread over a cube",
+        usual: 10_000,
         mesh: soup,
         view: View::Framed,
     },
-    Family { name: "scan", about: "a bumpy closed surface", mesh: scan, view: View::Framed },
+    Family {
+        name: "scan",
+        about: "a bumpy closed surface",
+        usual: 10_000,
+        mesh: scan,
+        view: View::Framed,
+    },
     Family {
         name: "town",
         about: "houses of all heights in a grid of streets: faces across the axes",
+        usual: 10_000,
         mesh: town,
         view: View::From(DVec3::new(0.15, 0.4, 1.35), DVec3::new(0.5, 0.02, 0.5)),
     },
     Family {
         name: "stadium",
         about: "a teapot with most of the triangles, in the middle of a stadium a thousand times as large",
+        usual: 10_000,
         mesh: stadium,
         view: View::From(DVec3::new(6e-4, 1.4e-3, 2.6e-3), DVec3::new(1e-4, 5e-4, 0.0)),
+    },
+];
+
+/// Buildings seen from within: long thin triangles, and dense detail in large empty rooms. No plate shows them;
+/// trees are built, and judged, by them.
+pub const BUILDINGS: [Family; 2] = [
+    Family {
+        name: "kitchen",
+        about: "a furnished kitchen",
+        usual: 57_000,
+        mesh: kitchen::kitchen,
+        view: View::Within(kitchen::EYE, kitchen::LOOK_AT),
+    },
+    Family {
+        name: "atrium",
+        about: "a hall of two storeys between colonnades",
+        usual: 66_000,
+        mesh: atrium::atrium,
+        view: View::Within(atrium::EYE, atrium::LOOK_AT),
     },
 ];
 
@@ -57,12 +96,19 @@ pub const FAMILIES: [Family; 4] = [
 /// # Panics
 /// If there is none.
 pub fn family(name: &str) -> Family {
-    let found = FAMILIES.into_iter().find(|family| family.name == name);
+    let found = FAMILIES.into_iter().chain(BUILDINGS).find(|family| family.name == name);
     found.unwrap_or_else(|| panic!("no kind of scene is called {name:?}"))
 }
 
-/// All kinds as scenes of the course, of 10,000 triangles unless another number is asked for.
-pub const SCENES: [NamedScene; 4] = [named("soup"), named("scan"), named("town"), named("stadium")];
+/// All kinds as scenes of the course.
+pub const SCENES: [NamedScene; 6] = [
+    named("soup"),
+    named("scan"),
+    named("town"),
+    named("stadium"),
+    named("kitchen"),
+    named("atrium"),
+];
 
 const fn named(name: &'static str) -> NamedScene {
     let variants = "a number of triangles, such as stadium:100000";
@@ -71,12 +117,13 @@ const fn named(name: &'static str) -> NamedScene {
 
 /// The scene of that kind, with about `count` triangles.
 fn sized(name: &str, count: Option<&str>) -> Result<Loaded> {
-    let count = count.map_or(Some(10_000), |text| {
+    let family = family(name);
+    let count = count.map_or(Some(family.usual), |text| {
         text.parse().ok().filter(|count| (100..=10_000_000).contains(count))
     });
     let count = count
         .with_context(|| format!("{name}: the number of triangles is one from 100 to 10000000"))?;
-    let scene = family(name).scene(count);
+    let scene = family.scene(count);
     let material_names = vec![UNNAMED.to_owned()];
     Ok(Loaded { scene, material_names, warnings: Vec::new(), headlight: true })
 }
@@ -88,11 +135,27 @@ impl Family {
         scene.camera = match self.view {
             View::Framed => Camera::framing(scene.bounding_sphere().expect("triangles")),
             View::From(eye, look_at) => Camera { eye, look_at, ..scene.camera },
+            View::Within(eye, look_at) => Camera { eye, look_at, fov: 62.0, ..scene.camera },
         };
         scene.lights.push(PointLight::beside(&scene.camera));
         scene.ambient = Rgb::splat(0.25);
         scene
     }
+}
+
+/// A mesh of about `count` triangles, whose curved parts are cut the finer the larger `detail` is.
+fn refined(count: u32, mesh: impl Fn(f64) -> Mesh) -> Mesh {
+    let mut detail = 1.0;
+    for _ in 0..6 {
+        let mesh = mesh(detail);
+        let growth = f64::from(count) / mesh.triangles.len() as f64;
+        if (0.98..1.02).contains(&growth) {
+            return mesh;
+        }
+        // Both ways of a surface are cut finer; what is flat is not, so that a step is too short at worst.
+        detail = (detail * growth.sqrt()).max(0.05);
+    }
+    mesh(detail)
 }
 
 /// Triangles evenly spread over a cube, as large as the distance to their neighbours.
@@ -159,13 +222,6 @@ fn push_house(mesh: &mut Mesh, low: DVec3, high: DVec3) {
     push_quad(mesh, around.map(|(x, z)| at(x, true, z)));
 }
 
-fn push_quad(mesh: &mut Mesh, corners: [DVec3; 4]) {
-    let first = mesh.positions.len() as u32;
-    mesh.positions.extend(corners);
-    let [a, b, c, d] = [first, first + 1, first + 2, first + 3];
-    mesh.push_face(MaterialId(0), &[[a, b, c], [a, c, d]]);
-}
-
 /// « Théière dans un stade »: a teapot of a thousandth of the size of the stadium that it stands in.
 fn stadium(count: u32) -> Mesh {
     let stands = (count / 4).max(64);
@@ -186,81 +242,19 @@ fn stadium(count: u32) -> Mesh {
     mesh
 }
 
-/// A teapot as high as 1: a pot and a lid of revolution, a spout and a handle.
-pub fn teapot(count: u32) -> Mesh {
-    // The pot has two parts of five, lid, spout and handle one each.
-    let rows = |part: f64| (f64::from(count) * part / 4.0).sqrt().round().max(2.0);
-    let pot = [(0.45, 0.0), (0.62, 0.12), (0.7, 0.35), (0.6, 0.6), (0.42, 0.78)];
-    let lid = [(0.44, 0.77), (0.25, 0.86), (0.06, 0.89), (0.1, 0.95), (0.0, 1.0)];
-    let mut mesh = revolved(&pot, rows(0.4));
-    let mut add = |part: Mesh| mesh.append(&part, DAffine3::IDENTITY, 0);
-    add(revolved(&lid, rows(0.2)));
-    add(tube(&[(0.6, 0.25), (0.85, 0.3), (0.9, 0.55), (1.05, 0.75)], [0.14, 0.05], rows(0.2)));
-    add(tube(&[(-0.6, 0.65), (-1.05, 0.7), (-1.0, 0.3), (-0.65, 0.2)], [0.05, 0.05], rows(0.2)));
-    mesh
-}
-
-/// A profile of (radius, height), turned around the vertical axis.
-fn revolved(profile: &[(f64, f64)], rows: f64) -> Mesh {
-    surface([2.0 * rows, rows], |turn, part| {
-        let around = turn * std::f64::consts::TAU;
-        let DVec2 { x: radius, y: height } = along(profile, part);
-        DVec3::new(radius * around.cos(), height, radius * around.sin())
-    })
-}
-
-/// A tube around a way in the plane z = 0, with its radii at both ends.
-fn tube(way: &[(f64, f64)], radii: [f64; 2], rows: f64) -> Mesh {
-    surface([rows, 2.0 * rows], |turn, part| {
-        let around = turn * std::f64::consts::TAU;
-        let ahead = (along(way, part + 1e-3) - along(way, part - 1e-3)).normalize();
-        let frame = DMat3::from_cols(ahead.extend(0.0), ahead.perp().extend(0.0), DVec3::Z);
-        let radius = radii[0] + (radii[1] - radii[0]) * part;
-        along(way, part).extend(0.0)
-            + frame * DVec3::new(0.0, radius * around.cos(), radius * around.sin())
-    })
-}
-
-/// The point of a Bézier curve, `part` of the way along.
-fn along(points: &[(f64, f64)], part: f64) -> DVec2 {
-    let mut points: Vec<DVec2> = points.iter().map(|&point| DVec2::from(point)).collect();
-    while points.len() > 1 {
-        points = points.windows(2).map(|pair| pair[0].lerp(pair[1], part)).collect();
-    }
-    points[0]
-}
-
-/// A surface over [0, 1]², cut into `across` by `down` quadrilaterals and those into triangles; it closes
-/// at the ends of its first coordinate.
-fn surface([across, down]: [f64; 2], point: impl Fn(f64, f64) -> DVec3) -> Mesh {
-    let (across, down) = (across.max(3.0) as u32, down.max(1.0) as u32);
-    let mut mesh = Mesh::default();
-    for row in 0..=down {
-        for column in 0..across {
-            let (turn, part) =
-                (f64::from(column) / f64::from(across), f64::from(row) / f64::from(down));
-            mesh.positions.push(point(turn, part));
-        }
-    }
-    for row in 0..down {
-        for column in 0..across {
-            let [here, next] = [column, (column + 1) % across].map(|k| row * across + k);
-            let [below, beside] = [here + across, next + across];
-            mesh.push_face(MaterialId(0), &[[here, next, beside], [here, beside, below]]);
-        }
-    }
-    mesh
-}
-
 #[cfg(test)]
 mod tests {
+    use lancer_accel::Wide;
     use lancer_accel::structures::STRUCTURES;
+    use lancer_core::geometry::{Interval, Ray};
+    use lancer_core::intersector::Intersector;
 
     use super::*;
 
     #[test]
     fn every_kind_is_a_scene_of_the_course() {
-        assert_eq!(SCENES.map(|scene| scene.name), FAMILIES.map(|family| family.name));
+        let families = FAMILIES.iter().chain(&BUILDINGS).map(|family| family.name);
+        assert!(SCENES.iter().map(|scene| scene.name).eq(families));
         for scene in SCENES {
             assert!(scene.open(Some("300")).is_ok() && scene.open(Some("99")).is_err());
         }
@@ -268,13 +262,51 @@ mod tests {
 
     #[test]
     fn scenes_have_about_as_many_triangles_as_asked_for() {
-        for family in FAMILIES {
-            for count in [300, 10_000, 100_000] {
+        // A building has its walls and furniture in any case.
+        let cases = FAMILIES.map(|family| (family, 300)).into_iter();
+        for (family, least) in cases.chain(BUILDINGS.map(|family| (family, 20_000))) {
+            for count in [least, family.usual, 100_000] {
                 let scene = family.scene(count);
                 let ratio = scene.mesh.triangles.len() as f64 / f64::from(count);
                 assert!((0.8..1.25).contains(&ratio), "{} {count}: {ratio}", family.name);
                 assert!(scene.camera.check().is_ok());
             }
+        }
+    }
+
+    #[test]
+    fn buildings_are_closed_around_the_eye() {
+        for family in BUILDINGS {
+            let scene = family.scene(20_000);
+            let index = Wide::build(&scene);
+            let mut random = Uniform::new(11, 0, 0);
+            for _ in 0..100_000 {
+                let ray = Ray::new(scene.camera.eye, random.direction());
+                let hit = index.closest_hit(&ray, Interval::POSITIVE);
+                assert!(hit.is_some(), "{}: {ray:?}", family.name);
+            }
+        }
+    }
+
+    /// What distinguishes them from scans: sizes over four decades, and a tenth of the triangles ten times as long as
+    /// they are high, or more.
+    #[test]
+    fn triangles_of_buildings_are_long_and_of_all_sizes() {
+        for family in BUILDINGS {
+            let scene = family.scene(family.usual);
+            let size = scene.bounding_sphere().expect("triangles").radius;
+            let triangles = scene.mesh.triangles.len();
+            let (mut decades, mut long) = ([0; 4], 0);
+            for [a, b, c] in (0..triangles).map(|k| scene.mesh.corners(k)) {
+                let longest =
+                    [b - a, c - b, a - c].map(DVec3::length).into_iter().fold(0.0, f64::max);
+                let height = (b - a).cross(c - a).length() / longest;
+                decades[(-(longest / size).log10()).clamp(0.0, 3.0) as usize] += 1;
+                long += usize::from(longest > 10.0 * height);
+            }
+            let shares = decades.map(|count| f64::from(count) / triangles as f64);
+            assert!(shares.iter().all(|share| *share > 1e-3), "{}: {shares:?}", family.name);
+            assert!(10 * long > triangles, "{}: {long} of {triangles}", family.name);
         }
     }
 
