@@ -14,7 +14,7 @@ use crate::four_boxes::{Frame, FrameBox};
 ///
 /// Boxes that contain much but the primitive, such as those of long diagonal triangles, overlap wherever
 /// primitives are divided. There a plane divides space: what reaches across it becomes two items, with a box
-/// around its part on each side. What is cheaper on one side as a whole stays whole.
+/// around its part on each side.
 ///
 /// Source: Stich, Friedrich and Dietrich, *Spatial Splits in Bounding Volume Hierarchies*, HPG 2009.
 pub(super) struct Splitter<'s> {
@@ -54,7 +54,7 @@ impl Slices {
     #[inline(always)]
     fn at(&self, p: Vec3A) -> [usize; 3] {
         let place = ((p - self.start) * self.per_unit).max(Vec3A::ZERO);
-        place.min(Vec3A::splat(BINS as f32 - 1.0)).to_array().map(|x| x as usize)
+        place.min(Vec3A::splat(BINS as f32 - 1.0)).to_array().map(|x| usize::from(x as u8))
     }
 
     /// The first and the last slice of a box on each axis. By its margin it does not reach into a slice.
@@ -98,7 +98,7 @@ impl Slices {
         let point = |p: Vec3A| FrameBox { min: p, max: p };
         let mut before = point(low);
         let mut is_before_middle = true;
-        for k in first..=last {
+        for k in first..last + 1 {
             let mut part = before;
             if k == last {
                 part = part.union(point(high));
@@ -254,41 +254,27 @@ impl<'s> Splitter<'s> {
         }
     }
 
-    /// Puts what is left of a plane first. What reaches across it is split, or belongs to one side as a whole
-    /// where that is cheaper.
+    /// Puts what is left of a plane first. What reaches across it is split.
     fn partition(&self, room: &mut [Item], count: usize, plane: &Plane) -> [Content; 2] {
-        let &Plane { slices, axis, .. } = plane;
-        let Parts { mut left, mut right, .. } = plane.parts;
+        let &Plane { slices, axis, last: before, .. } = plane;
+        let at = slices.plane(axis, before + 1);
         let mut parts = [Content::NONE; 2];
         let (mut lefts, mut all) = (0, count);
-        let at = slices.plane(axis, plane.last + 1);
         for k in 0..count {
             let item = room[k];
             let whole = item.bounds();
             let [first, last] = slices.span(whole).map(|slices| slices[axis]);
-            let mut halves = [Some(whole); 2];
-            if last <= plane.last {
-                halves[1] = None;
-            } else if first > plane.last {
-                halves[0] = None;
-            } else if let Some(cut) = self.halves(&item, axis, at) {
-                let fewer = |content: Content| Content { count: content.count - 1, ..content };
-                let to_left =
-                    Parts::new(Content { bounds: left.bounds.union(whole), ..left }, fewer(right));
-                let to_right =
-                    Parts::new(fewer(left), Content { bounds: right.bounds.union(whole), ..right });
-                let cost = left.cost() + right.cost();
-                if to_left.cost < cost.min(to_right.cost) {
-                    (left, right, halves[1]) = (to_left.left, to_left.right, None);
-                } else if to_right.cost < cost {
-                    (left, right, halves[0]) = (to_right.left, to_right.right, None);
-                } else {
-                    halves = cut;
-                }
+            let halves = if last <= before {
+                [Some(whole), None]
+            } else if first > before {
+                [None, Some(whole)]
+            } else if let Some(halves) = self.halves(&item, axis, at) {
+                halves
+            } else if slices.at(0.5 * item.center())[axis] <= before {
+                [Some(whole), None]
             } else {
-                let side = slices.at(0.5 * item.center())[axis] > plane.last;
-                halves[usize::from(!side)] = None;
-            }
+                [None, Some(whole)]
+            };
             for (part, half) in parts.iter_mut().zip(halves) {
                 if let Some(bounds) = half {
                     *part = part.and(Content { bounds, count: 1 });

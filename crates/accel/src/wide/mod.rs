@@ -16,6 +16,7 @@ use lancer_core::intersector::{
 use lancer_core::scene::{PrimitiveId, Scene, Subset};
 
 use crate::binary_tree::{BinaryTree, Coverage};
+use crate::bvh::Items;
 use crate::four_boxes::{Frame, FrameBox};
 use crate::front::Front;
 use collapse::WIDTH;
@@ -200,12 +201,13 @@ impl<'s> Wide<'s> {
     }
 
     fn with_kernel(primitives: Subset<'s>, kernel: Kernel) -> Self {
-        let (tree, overlap) = BinaryTree::of_whole_primitives(&primitives);
+        let mut items = Items::of(&primitives);
+        let (tree, overlap) = items.whole();
         let whole = Self::of(&tree, kernel);
         if !overlap {
             return whole;
         }
-        let split = Self::of(&BinaryTree::of_split_primitives(&primitives), kernel);
+        let split = Self::of(&items.split(), kernel);
         let [of_whole, of_split] = [&whole, &split].map(|wide| choice::cost(wide, &primitives));
         if of_split < WORTH * of_whole { split } else { whole }
     }
@@ -224,7 +226,7 @@ impl<'s> Wide<'s> {
     /// it, and that primitives are not split into more parts than they may be.
     pub fn validate<'p>(&self, primitives: impl Into<Subset<'p>>) -> Result<(), String> {
         let primitives = primitives.into();
-        let most = BinaryTree::most_parts(primitives.len());
+        let most = Items::most_parts(primitives.len());
         let mut coverage = Coverage::new(primitives, self.nodes.len());
         let mut pending = if self.nodes.is_empty() { Vec::new() } else { vec![(0, 0)] };
         while let Some((index, depth)) = pending.pop() {
