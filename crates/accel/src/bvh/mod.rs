@@ -312,6 +312,37 @@ mod tests {
         }
     }
 
+    /// Long diagonal triangles are split, no more often than they may be, and alike by any number of threads.
+    #[test]
+    fn needles_are_split_the_same_way_by_any_number_of_threads() {
+        let corners = |k: u32| {
+            let turn = f64::from(k) * 2.4;
+            let out = DVec3::new(turn.cos(), turn.sin(), f64::from(k % 97) / 97.0);
+            let beside = DVec3::new(0.01, 0.0, 0.01);
+            [out, -out, beside - out]
+        };
+        let scene = triangles((0..20_000).map(corners));
+        let built = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let tree = pool.install(|| Items::of(&(&scene).into()).split());
+            let mut parts = Vec::new();
+            let mut pending = vec![0];
+            while let Some(index) = pending.pop() {
+                let node = tree.nodes[index];
+                if node.is_leaf() {
+                    let primitives = tree.primitives[node.leaf()].iter();
+                    parts.extend(primitives.map(|&primitive| (node.bounds, primitive)));
+                } else {
+                    pending.extend(node.children());
+                }
+            }
+            parts
+        };
+        let one = built(1);
+        assert!((21_000..=Items::most_parts(20_000)).contains(&one.len()), "{}", one.len());
+        assert!([2, 7].map(built).into_iter().all(|other| other == one));
+    }
+
     /// Two triangles far apart: a leaf's box has the sides (1, 1, 0) and the half area 1, the root's
     /// (11, 1, 0) and 11: C = (11 + 1 + 1) / 11. The frame changes nothing but the scale.
     #[test]

@@ -26,8 +26,11 @@ use lanes::avx2::Avx2;
 
 /// A hierarchy of eight children per node: culled eight at a time in `f32`, answered in `f64`.
 ///
-/// *Built* from the binary tree of [`crate::Bvh`], grown down to single primitives, by the cheapest
-/// collapse (dynamic programming): a node takes in up to eight descendants, a leaf up to eight triangles.
+/// *Built* from the binary tree of [`crate::Bvh`], grown down to pairs of primitives, by the cheapest
+/// collapse (dynamic programming): a node takes in up to eight descendants, a leaf up to eight triangles. Where boxes
+/// overlap, as those of long diagonal triangles do, a second tree is built in which triangles are split by planes
+/// and may be in several leaves, each with a part of its box; rays of a fixed seed try both. [`Wide::fast`] takes the
+/// first.
 ///
 /// *Walked* near to far: eight boxes, then eight triangles are tested together. Rays of one origin are walked
 /// as a packet.
@@ -36,7 +39,8 @@ use lanes::avx2::Avx2;
 /// none, and to [`crate::ObvhsCwbvh`] in memory.
 ///
 /// *Sources:* Wald, Benthin and Boulos, *Getting Rid of Packets: Efficient SIMD Single-Ray Traversal using
-/// Multi-branching BVHs*, RT 2008; the collapse: Ylitie, Karras and Laine, HPG 2017.
+/// Multi-branching BVHs*, RT 2008; the collapse: Ylitie, Karras and Laine, HPG 2017; the splits: Stich, Friedrich and
+/// Dietrich, HPG 2009.
 ///
 /// ```text
 /// node, 256 bytes     lowest x [8]  highest x [8]  lowest y [8]  …  highest z [8]   f32, rounded outwards
@@ -190,7 +194,12 @@ impl<'s> Wide<'s> {
         Self::with_kernel(primitives.into(), Kernel::best())
     }
 
-    /// The same without the processor's vectors: what other processors have.
+    /// Builds a tree in which no primitive is split: in buildings in a third of the time, and rays take a third more.
+    pub fn fast(primitives: impl Into<Subset<'s>>) -> Self {
+        Self::of(&Items::of(&primitives.into()).whole().0, Kernel::best())
+    }
+
+    /// What [`Wide::build`] builds, without the processor's vectors: what other processors have.
     pub fn scalar(primitives: impl Into<Subset<'s>>) -> Self {
         Self::with_kernel(primitives.into(), Kernel::Scalar(Scalar))
     }
