@@ -103,21 +103,12 @@ impl Bins {
         (halvings as usize).min(BINS - 1)
     }
 
-    /// An item's bin in one of the orders.
-    #[inline(always)]
-    fn of(&self, item: &Item, order: Order) -> usize {
-        match order {
-            Order::Axis(axis) => self.of_place(item)[axis],
-            Order::Size => self.of_size(item),
-        }
-    }
-
     /// An item's bin on each axis.
     #[inline(always)]
     fn of_place(&self, item: &Item) -> [usize; 3] {
         let position = (item.center() - self.start) * self.per_unit;
         // The last centre is at the far end of the last bin.
-        position.min(Vec3A::splat(BINS as f32 - 1.0)).to_array().map(|x| x as usize)
+        position.min(Vec3A::splat(BINS as f32 - 1.0)).to_array().map(|x| usize::from(x as u8))
     }
 }
 
@@ -170,11 +161,13 @@ pub(super) struct BinCut {
 impl BinCut {
     /// Puts the items of the left side before the others.
     pub(super) fn partition(&self, items: &mut [Item]) {
-        let mut left = 0;
-        for k in 0..items.len() {
-            if self.bins.of(&items[k], self.order) <= self.last {
-                items.swap(left, k);
-                left += 1;
+        let Self { bins, last, .. } = self;
+        match self.order {
+            Order::Size => partition(items, |item| bins.of_size(item) <= *last),
+            Order::Axis(axis) => {
+                let (start, per_unit) = (bins.start[axis], bins.per_unit[axis]);
+                let end = (last + 1) as f32;
+                partition(items, |item| (item.center()[axis] - start) * per_unit < end);
             }
         }
     }
@@ -207,6 +200,18 @@ impl BinCut {
             }
         }
         best
+    }
+}
+
+/// Puts the items that are on the left before the others.
+#[inline(always)]
+fn partition(items: &mut [Item], is_left: impl Fn(&Item) -> bool) {
+    let mut left = 0;
+    for k in 0..items.len() {
+        if is_left(&items[k]) {
+            items.swap(left, k);
+            left += 1;
+        }
     }
 }
 

@@ -23,6 +23,8 @@ pub(super) struct Rule<'s> {
     pub(super) split: Split,
     /// Primitives of a leaf at most.
     pub(super) max_leaf: usize,
+    /// As many are a leaf even where dividing them pays.
+    pub(super) whole_leaf: usize,
     /// The share of the best other cut's cost below which primitives are divided by their sizes.
     pub(super) by_size: f32,
     /// What splits primitives, if they may be.
@@ -130,7 +132,7 @@ fn divide(
     rule: &Rule,
 ) -> Option<[Content; 2]> {
     let too_many = count > rule.max_leaf;
-    if count == 1 || (rule.split == Split::Median && !too_many) {
+    if count <= rule.whole_leaf || (rule.split == Split::Median && !too_many) {
         return None;
     }
     if rule.split == Split::Median || depth >= SAH_DEPTH {
@@ -188,7 +190,8 @@ mod tests {
     use super::*;
     use crate::bvh::item::items;
 
-    const RULE: Rule = Rule { split: Split::Sah, max_leaf: MAX_LEAF, by_size: 1.0, splitter: None };
+    const RULE: Rule =
+        Rule { split: Split::Sah, max_leaf: MAX_LEAF, whole_leaf: 1, by_size: 1.0, splitter: None };
 
     /// The steps from the root to the deepest leaf.
     fn depth(nodes: &[TreeNode], node: usize) -> usize {

@@ -114,38 +114,15 @@ impl BeamTraversal for Bvh<'_> {
 impl<'s> BinaryTree<'s> {
     /// Builds the tree. It is the same for any number of threads.
     pub fn build(primitives: impl Into<Subset<'s>>, split: Split) -> Self {
-        let rule = Rule { split, max_leaf: MAX_LEAF, by_size: 1.0, splitter: None };
-        let mut tree = Items::of(&primitives.into(), 0).tree(&rule);
-        tree.close_gaps();
-        tree
+        let rule = Rule { split, max_leaf: MAX_LEAF, whole_leaf: 1, by_size: 1.0, splitter: None };
+        Items::of(&primitives.into()).tree(&rule)
     }
 
-    /// The tree by the surface area heuristic down to single primitives, to be collapsed.
+    /// The tree by the surface area heuristic down to single primitives.
     pub(crate) fn of_single_primitives(primitives: &Subset<'s>) -> Self {
-        Self::of_whole_primitives(primitives).0
-    }
-
-    /// The same, and whether splitting primitives may make a better one: whether many boxes overlap.
-    pub(crate) fn of_whole_primitives(primitives: &Subset<'s>) -> (Self, bool) {
-        let items = Items::of(primitives, 0);
-        let splitter = Some(items.splitter());
-        let rule = Rule { split: Split::Sah, max_leaf: 1, by_size: 1.0, splitter };
-        let tree = items.tree(&rule);
-        let crowded = rule.splitter.map_or(0, Splitter::crowded);
-        (tree, crowded >= primitives.len().max(1))
-    }
-
-    /// The same with primitives that are split where their boxes overlap, so that some are in several leaves, each
-    /// with a part of their boxes. There are gaps between nodes and between primitives.
-    pub(crate) fn of_split_primitives(primitives: &Subset<'s>) -> Self {
-        let items = Items::of(primitives, Self::most_parts(primitives.len()) - primitives.len());
-        let splitter = Some(items.splitter());
-        items.tree(&Rule { split: Split::Sah, max_leaf: 1, by_size: SPLIT_BY_SIZE, splitter })
-    }
-
-    /// How many parts so many primitives are split into at most.
-    pub(crate) fn most_parts(primitives: usize) -> usize {
-        primitives + primitives * MORE_PARTS / 100
+        let split = Split::Sah;
+        let rule = Rule { split, max_leaf: 1, whole_leaf: 1, by_size: 1.0, splitter: None };
+        Items::of(primitives).tree(&rule)
     }
 
     /// Moves the nodes together.
@@ -168,14 +145,16 @@ impl<'s> BinaryTree<'s> {
     }
 }
 
+/// Trees to be collapsed, with leaves of one or two primitives.
+const WHOLE_LEAF: usize = 2;
 /// How many parts there may be more than primitives, in percent.
 const MORE_PARTS: usize = 30;
-/// Where primitives may be split a cut by size must be better by this: what it parts cannot be split in one another's
-/// place any more.
+/// Where primitives may be split a cut by size must be better by this: what it parts cannot be split at one plane any
+/// more.
 const SPLIT_BY_SIZE: f32 = 0.5;
 
-/// The primitives that a tree is built over.
-struct Items<'s> {
+/// The primitives that trees are built over.
+pub(crate) struct Items<'s> {
     scene: &'s Scene,
     frame: Frame,
     /// As many as there are primitives, and free places.
@@ -185,31 +164,57 @@ struct Items<'s> {
 }
 
 impl<'s> Items<'s> {
-    fn of(primitives: &Subset<'s>, free: usize) -> Self {
+    pub(crate) fn of(primitives: &Subset<'s>) -> Self {
         let (scene, count) = (primitives.scene(), primitives.len());
         let frame = Frame::of(primitives.bounds());
         let item = |place| {
             let primitive = primitives.get(place);
             Item::new(frame.outwards(scene.primitive_bounds(primitive)), primitive)
         };
-        let mut room = Vec::with_capacity(count + free);
-        (0..count).into_par_iter().map(item).collect_into_vec(&mut room);
-        let bounds = room.iter().fold(FrameBox::EMPTY, |all, item: &Item| all.union(item.bounds()));
-        if let Some(&first) = room.first() {
-            room.resize(count + free, first);
-        }
+        let room: Vec<Item> = (0..count).into_par_iter().map(item).collect();
+        let bounds = room.iter().fold(FrameBox::EMPTY, |all, item| all.union(item.bounds()));
         Self { scene, frame, room, count, bounds }
     }
 
-    fn splitter(&self) -> Splitter<'s> {
-        Splitter::new(self.scene, self.frame, self.bounds)
+    /// The tree by the surface area heuristic, to be collapsed, with gaps between nodes; and whether splitting
+    /// primitives may make a better one, because many of its boxes overlap.
+    pub(crate) fn whole(&mut self) -> (BinaryTree<'s>, bool) {
+        let rule = self.rule(1.0);
+        let tree = self.grow(&rule);
+        let crowded = rule.splitter.map_or(0, Splitter::crowded);
+        (tree, crowded > self.count)
     }
 
-    fn tree(self, rule: &Rule) -> BinaryTree<'s> {
-        let Self { scene, frame, mut room, count, bounds } = self;
-        let nodes = grow::tree(&mut room, count, bounds, rule);
-        let primitives = room.iter().map(Item::primitive).collect();
-        BinaryTree { scene, frame, nodes, primitives }
+    /// The same with primitives that are split where their boxes overlap, so that some are in several leaves, each
+    /// with a part of their boxes. There are gaps between primitives as well.
+    pub(crate) fn split(mut self) -> BinaryTree<'s> {
+        if let Some(&first) = self.room.first() {
+            self.room.resize(Self::most_parts(self.count), first);
+        }
+        let rule = self.rule(SPLIT_BY_SIZE);
+        self.grow(&rule)
+    }
+
+    /// How many parts so many primitives are split into at most.
+    pub(crate) fn most_parts(primitives: usize) -> usize {
+        primitives + primitives * MORE_PARTS / 100
+    }
+
+    fn rule(&self, by_size: f32) -> Rule<'s> {
+        let splitter = Some(Splitter::new(self.scene, self.frame, self.bounds));
+        Rule { split: Split::Sah, max_leaf: WHOLE_LEAF, whole_leaf: WHOLE_LEAF, by_size, splitter }
+    }
+
+    fn grow(&mut self, rule: &Rule) -> BinaryTree<'s> {
+        let nodes = grow::tree(&mut self.room, self.count, self.bounds, rule);
+        let primitives = self.room.iter().map(Item::primitive).collect();
+        BinaryTree { scene: self.scene, frame: self.frame, nodes, primitives }
+    }
+
+    fn tree(mut self, rule: &Rule) -> BinaryTree<'s> {
+        let mut tree = self.grow(rule);
+        tree.close_gaps();
+        tree
     }
 }
 
@@ -305,6 +310,37 @@ mod tests {
             let one = built(1);
             assert!([2, 7].map(built).into_iter().all(|other| other == one));
         }
+    }
+
+    /// Long diagonal triangles are split, no more often than they may be, and alike by any number of threads.
+    #[test]
+    fn needles_are_split_the_same_way_by_any_number_of_threads() {
+        let corners = |k: u32| {
+            let turn = f64::from(k) * 2.4;
+            let out = DVec3::new(turn.cos(), turn.sin(), f64::from(k % 97) / 97.0);
+            let beside = DVec3::new(0.01, 0.0, 0.01);
+            [out, -out, beside - out]
+        };
+        let scene = triangles((0..20_000).map(corners));
+        let built = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let tree = pool.install(|| Items::of(&(&scene).into()).split());
+            let mut parts = Vec::new();
+            let mut pending = vec![0];
+            while let Some(index) = pending.pop() {
+                let node = tree.nodes[index];
+                if node.is_leaf() {
+                    let primitives = tree.primitives[node.leaf()].iter();
+                    parts.extend(primitives.map(|&primitive| (node.bounds, primitive)));
+                } else {
+                    pending.extend(node.children());
+                }
+            }
+            parts
+        };
+        let one = built(1);
+        assert!((21_000..=Items::most_parts(20_000)).contains(&one.len()), "{}", one.len());
+        assert!([2, 7].map(built).into_iter().all(|other| other == one));
     }
 
     /// Two triangles far apart: a leaf's box has the sides (1, 1, 0) and the half area 1, the root's

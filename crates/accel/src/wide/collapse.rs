@@ -1,4 +1,4 @@
-//! From a binary tree with one primitive per leaf to nodes of eight children and leaves of up to eight
+//! From a binary tree with one or two primitives per leaf to nodes of eight children and leaves of up to eight
 //! triangles.
 
 use lancer_core::scene::PrimitiveId;
@@ -25,7 +25,7 @@ struct Below {
     /// `left[k]`: how many of at most k + 1 of them are in its left part; 0 where fewer, or one leaf or
     /// node, are better.
     left: [u8; WIDTH],
-    /// Its leaves, of one primitive each.
+    /// The primitives of its leaves; one that was split may count several times.
     count: u32,
 }
 
@@ -58,7 +58,7 @@ fn cost_of(tree: &[TreeNode], index: usize, descendants: &mut [Below]) -> Below 
     let area = node.bounds.half_area();
     if node.is_leaf() {
         let cost = [LEAF_COST * area; WIDTH - 1];
-        return Below { cost, left: [0; WIDTH], count: 1 };
+        return Below { cost, left: [0; WIDTH], count: node.count };
     }
     let [left, right] = node.children();
     let below_right = if tree[right].is_leaf() { None } else { Some(tree[right].children()[0]) };
@@ -166,9 +166,10 @@ type Primitives = SmallVec<[PrimitiveId; WIDTH]>;
 fn gather(tree: &BinaryTree, node: usize, into: &mut Primitives) {
     let node = &tree.nodes[node];
     if node.is_leaf() {
-        let primitive = tree.primitives[node.first as usize];
-        if !into.contains(&primitive) {
-            into.push(primitive);
+        for primitive in &tree.primitives[node.leaf()] {
+            if !into.contains(primitive) {
+                into.push(*primitive);
+            }
         }
         return;
     }

@@ -22,6 +22,7 @@ use lancer_core::intersector::{
 use lancer_core::scene::{PrimitiveId, Scene, Subset};
 
 use crate::binary_tree::{BinaryTree, Coverage};
+use crate::bvh::Items;
 use crate::four_boxes::{Frame, FrameBox};
 use crate::front::Front;
 use collapse::WIDTH;
@@ -33,8 +34,11 @@ use leaf::{HEADER, RECORD, UNIT, integer_of};
 
 /// A hierarchy of eight children per node: culled eight at a time in `f32`, answered in `f64`.
 ///
-/// *Built* from the binary tree of [`crate::Bvh`], grown down to single primitives, by the cheapest
-/// collapse (dynamic programming): a node takes in up to eight descendants, a leaf up to eight triangles.
+/// *Built* from the binary tree of [`crate::Bvh`], grown down to pairs of primitives, by the cheapest
+/// collapse (dynamic programming): a node takes in up to eight descendants, a leaf up to eight triangles. Where boxes
+/// overlap, as those of long diagonal triangles do, a second tree is built in which triangles are split by planes
+/// and may be in several leaves, each with a part of its box; rays of a fixed seed try both. [`Wide::fast`] takes the
+/// first.
 ///
 /// *Walked* near to far: eight boxes, then eight triangles are tested together. Rays of one origin are walked
 /// as a packet.
@@ -43,7 +47,8 @@ use leaf::{HEADER, RECORD, UNIT, integer_of};
 /// none, and to [`crate::ObvhsCwbvh`] in memory.
 ///
 /// *Sources:* Wald, Benthin and Boulos, *Getting Rid of Packets: Efficient SIMD Single-Ray Traversal using
-/// Multi-branching BVHs*, RT 2008; the collapse: Ylitie, Karras and Laine, HPG 2017.
+/// Multi-branching BVHs*, RT 2008; the collapse: Ylitie, Karras and Laine, HPG 2017; the splits: Stich, Friedrich and
+/// Dietrich, HPG 2009.
 ///
 /// ```text
 /// node, 256 bytes     lowest x [8]  highest x [8]  lowest y [8]  …  highest z [8]   f32, rounded outwards
@@ -171,7 +176,12 @@ impl<'s> Wide<'s> {
         Self::with_kernel(primitives.into(), Kernel::best())
     }
 
-    /// The same without the processor's vectors: what other processors have.
+    /// Builds a tree in which no primitive is split: in buildings in a third of the time, and rays take a third more.
+    pub fn fast(primitives: impl Into<Subset<'s>>) -> Self {
+        Self::of(&Items::of(&primitives.into()).whole().0, Kernel::best())
+    }
+
+    /// What [`Wide::build`] builds, without the processor's vectors: what other processors have.
     pub fn scalar(primitives: impl Into<Subset<'s>>) -> Self {
         Self::with_kernel(primitives.into(), Kernel::Scalar(Scalar))
     }
@@ -191,12 +201,13 @@ impl<'s> Wide<'s> {
 
     /// A tree, of however few.
     fn tree(primitives: Subset<'s>, kernel: Kernel) -> Self {
-        let (tree, overlap) = BinaryTree::of_whole_primitives(&primitives);
+        let mut items = Items::of(&primitives);
+        let (tree, overlap) = items.whole();
         let whole = Self::of(&tree, kernel);
         if !overlap {
             return whole;
         }
-        let split = Self::of(&BinaryTree::of_split_primitives(&primitives), kernel);
+        let split = Self::of(&items.split(), kernel);
         let [of_whole, of_split] = [&whole, &split].map(|wide| choice::cost(wide, &primitives));
         if of_split < WORTH * of_whole { split } else { whole }
     }
@@ -220,7 +231,7 @@ impl<'s> Wide<'s> {
             let are_all = few.primitives().eq(primitives.iter());
             return if are_all { Ok(()) } else { Err("it has not the primitives".into()) };
         }
-        let most = BinaryTree::most_parts(primitives.len());
+        let most = Items::most_parts(primitives.len());
         let mut coverage = Coverage::new(primitives, self.nodes.len());
         let mut pending = if self.nodes.is_empty() { Vec::new() } else { vec![(0, 0)] };
         while let Some((index, depth)) = pending.pop() {
