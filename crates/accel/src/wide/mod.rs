@@ -349,7 +349,7 @@ impl Intersector for Wide<'_> {
                 occluded,
                 #[inline(always)]
                 |lanes, wide, rays, range, occluded| {
-                    walk::any_each(lanes, wide, rays, range, occluded)
+                    walk::any_each(lanes, wide, rays, range, occluded);
                 },
             ),
             Kernel::Scalar(lanes) => walk::any_each(lanes, self, rays, range, occluded),
