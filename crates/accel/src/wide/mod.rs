@@ -454,7 +454,7 @@ impl Intersector for Wide<'_> {
                 occluded,
                 #[inline(always)]
                 |lanes, wide, rays, range, occluded| {
-                    wide.occluded_all_by(lanes, rays, range, occluded)
+                    wide.occluded_all_by(lanes, rays, range, occluded);
                 },
             ),
             Kernel::Scalar(lanes) => self.occluded_all_by(lanes, rays, range, occluded),
