@@ -312,14 +312,14 @@ mod tests {
         }
     }
 
-    /// Long diagonal triangles are split, no more often than they may be, and alike by any number of threads.
+    /// Long diagonal triangles among small ones are split, no more often than they may be, and alike by any number of threads.
     #[test]
     fn needles_are_split_the_same_way_by_any_number_of_threads() {
+        let place = |k: u32| (DVec3::new(0.8192, 0.6711, 0.5497) * f64::from(k)).fract();
         let corners = |k: u32| {
-            let turn = f64::from(k) * 2.4;
-            let out = DVec3::new(turn.cos(), turn.sin(), f64::from(k % 97) / 97.0);
-            let beside = DVec3::new(0.01, 0.0, 0.01);
-            [out, -out, beside - out]
+            // A needle across the cube, or a crumb.
+            let end = if k % 200 == 0 { place(7 * k + 3) } else { place(k) + 0.002 * DVec3::Y };
+            [place(k), end, end + 0.002 * DVec3::X]
         };
         let scene = triangles((0..20_000).map(corners));
         let built = |threads| {
@@ -339,7 +339,7 @@ mod tests {
             parts
         };
         let one = built(1);
-        assert!((21_000..=Items::most_parts(20_000)).contains(&one.len()), "{}", one.len());
+        assert!((20_500..=Items::most_parts(20_000)).contains(&one.len()), "{}", one.len());
         assert!([2, 7].map(built).into_iter().all(|other| other == one));
     }
 
