@@ -2,6 +2,7 @@
 //! aimed where indexes go wrong.
 
 use chapter_4::aimed::{CLASSES, aimed};
+use chapter_4::scenes::BUILDINGS;
 use glam::DVec3;
 use lancer_accel::structures::STRUCTURES;
 use lancer_accel::{BinaryTree, Bvh, ObvhsBvh2, Split, Wide};
@@ -130,6 +131,77 @@ fn soak_on_an_icosphere() {
     for offset in OFFSETS {
         assert_agreement(&Scene::of_mesh(moved(&icosphere(3), offset)), offset, 100_000);
     }
+}
+
+/// A ray that a triangle's plane nearly contains: where it meets the triangle, `f64` can hardly tell.
+fn edge_on(mesh: &Mesh, random: &mut Random) -> Ray {
+    let [a, b, c] = mesh.corners(random.below(mesh.triangles.len()));
+    let (u, v) = (random.unit(), random.unit());
+    let point = a + u * (b - a) + v * (1.0 - u) * (c - a);
+    let along = random.between(-1.0, 1.0) * (b - a) + random.between(-1.0, 1.0) * (c - a);
+    let along = along.normalize_or(DVec3::X) * random.between(0.01, 2.0);
+    let normal = (b - a).cross(c - a).normalize_or_zero();
+    let mut tilted = || normal * 10.0_f64.powf(random.between(-17.0, -5.0));
+    Ray::new(point - along + tilted(), along + tilted())
+}
+
+/// Buildings in whose trees primitives are split, so that a box holds a part of what may be hit elsewhere. `rays` of
+/// each class are answered as by `oracle`, and where that differs by brute force.
+fn assert_split_trees_agree(triangles: u32, rays: usize, offsets: &[DVec3]) {
+    for building in BUILDINGS {
+        for &offset in offsets {
+            let mut mesh = building.scene(triangles).mesh;
+            let bounds = Scene::of_mesh(mesh.clone()).bounds();
+            let size = (bounds.max - bounds.min).max_element();
+            for position in &mut mesh.positions {
+                *position = offset + (*position - bounds.center()) * (2.0 / size);
+            }
+            let scene = Scene::of_mesh(mesh);
+            let (whole, split) = (Wide::fast(&scene), Wide::build(&scene));
+            assert!(split.memory() > whole.memory(), "nothing is split in {}", building.name);
+            let (oracle, linear) = (Bvh::build(&scene), LinearScan::new(&scene));
+            let scalar = Wide::scalar(&scene);
+            for class in CLASSES.into_iter().chain(["edge-on"]) {
+                let mut random = Random::new(19);
+                let mut hits = 0;
+                for _ in 0..rays {
+                    let ray = if class == "edge-on" {
+                        edge_on(&scene.mesh, &mut random)
+                    } else {
+                        aimed(class, &scene.mesh, offset, &mut || random.unit())
+                    };
+                    let mut wanted = oracle.closest_hit(&ray, Interval::POSITIVE);
+                    for wide in [&split, &scalar, &whole] {
+                        let got = wide.closest_hit(&ray, Interval::POSITIVE);
+                        if got != wanted {
+                            wanted = linear.closest_hit(&ray, Interval::POSITIVE);
+                        }
+                        assert_eq!(got, wanted, "{}, {class} at {offset}: {ray:?}", building.name);
+                        let Some(hit) = wanted else { continue };
+                        assert!(wide.occluded(&ray, Interval::up_to(hit.t.next_up())), "{ray:?}");
+                        assert!(!wide.occluded(&ray, Interval::up_to(hit.t)), "{ray:?}");
+                    }
+                    hits += usize::from(wanted.is_some());
+                }
+                assert!(
+                    hits * 20 > rays,
+                    "{}, {class}: {hits} hits test too little",
+                    building.name
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn on_buildings_of_split_primitives() {
+    assert_split_trees_agree(20_000, 2_000, &OFFSETS[..1]);
+}
+
+#[test]
+#[ignore = "soak: 3 · 10^5 rays per class; cargo test --release -p lancer-tests -- --ignored"]
+fn soak_on_buildings() {
+    assert_split_trees_agree(50_000, 300_000, &OFFSETS);
 }
 
 /// Sets on which builders recurse for ever or divide by zero.

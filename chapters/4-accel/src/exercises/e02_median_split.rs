@@ -38,7 +38,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         ],
         solution: Solution {
             answer: include_str!("../../solutions/e02_median_split.rs"),
-            file: "crates/accel/src/bvh/grow.rs",
+            file: "crates/accel/src/bvh/mod.rs",
             item: "pub fn split_at_median",
             notice: "nothing is sorted: `select_nth_unstable_by` only puts the middle item into its place, in \
                      O(n)",
