@@ -73,7 +73,7 @@ use leaf::{HEADER, RECORD, UNIT, integer_of};
 /// - The ray stays in memory, and what tests boxes in registers. A ray's own numbers are read one by one: most rays
 ///   have been written just before.
 /// - Rays of one origin are walked as a packet, [`Intersector::closest_hits`]; what that gains is plate 4.9's.
-/// - Up to 64 primitives have no tree: `f64` asks them four at a time, or four rays at a time, by the formulas of
+/// - Up to 16 primitives have no tree: `f64` asks them four at a time, or four rays at a time, by the formulas of
 ///   one, which stand once for any number of lanes ([`lancer_core::geometry::Real`]). So are the spheres of a leaf.
 ///
 #[doc = include_str!("bounds.md")]
