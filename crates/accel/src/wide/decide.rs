@@ -1,22 +1,21 @@
 //! What `f64` decides.
 
 use glam::DVec3;
-use lancer_core::geometry::{Axis, Interval, Ray, Real, Shear, solve_triangle};
+use lancer_core::geometry::{
+    Axis, Interval, Ray, Real, Shear, intersect_triangles, solve_triangle,
+};
 use lancer_core::intersector::{Hit, Probe};
-use lancer_core::scene::PrimitiveId;
 use smallvec::SmallVec;
 
 use super::Wide;
 use super::lanes::{Lanes, gather};
 use super::packet::RAYS;
 
-/// A ray that `f64` decides on, triangle by triangle: by the formulas of [`solve_triangle`] in lanes of one number
-/// each. Of several numbers the compiler would make vectors, and shuffle longer than it computes.
+/// A ray that `f64` decides on, triangle by triangle: by the formulas of [`intersect_triangles`] in lanes of one
+/// number each. Of several numbers the compiler would make vectors, and shuffle longer than it computes.
 pub(super) struct Decision<'w, L: Lanes> {
     lanes: L,
     wide: &'w Wide<'w>,
-    ray: &'w Ray,
-    range: Interval,
     origin: [L::One; 3],
     shear: Shear<L::One>,
     probe: Probe<'w>,
@@ -38,7 +37,7 @@ impl<'w, L: Lanes> Decision<'w, L> {
         }
         let origin = ones(lanes, ray.origin);
         let shear = Shear::along(Axis::longest(ray.direction), ones(lanes, ray.direction));
-        Self { lanes, wide, ray, range, origin, shear, probe }
+        Self { lanes, wide, origin, shear, probe }
     }
 
     /// Decides on a triangle, by its record, that the ray meets for certain if `is_certain`. Returns whether it is
@@ -54,18 +53,18 @@ impl<'w, L: Lanes> Decision<'w, L> {
         let [a, b, c] = [ones(lanes, a), ones(lanes, b), ones(lanes, c)];
         let origin = self.origin;
         let corners = [relative(a, origin), relative(b, origin), relative(c, origin)];
-        let (t, [u, v, w]) = solve_triangle(corners, &self.shear);
-        let t = lanes.number(t);
-        if is_certain {
-            let barycentric = [lanes.number(u), lanes.number(v), lanes.number(w)].into();
-            return self.probe.keep(Hit { t, primitive: id, barycentric });
-        }
-        // The plane of a surface that a ray leaves is met outside the range, if only just.
-        let Interval { min, max } = self.probe.range();
-        if !(t > min && t <= max) {
-            return false;
-        }
-        confirmed(self.wide, self.ray, self.range, id).is_some_and(|hit| self.probe.keep(hit))
+        let (t, [u, v, w]) = if is_certain {
+            solve_triangle(corners, &self.shear)
+        } else {
+            let Interval { min, max } = self.probe.range();
+            let range = [lanes.one(min), lanes.one(max)];
+            match intersect_triangles(corners, &self.shear, range) {
+                Some((t, weights, met)) if L::One::bits(met) & 1 != 0 => (t, weights),
+                _ => return false,
+            }
+        };
+        let barycentric = [lanes.number(u), lanes.number(v), lanes.number(w)].into();
+        self.probe.keep(Hit { t: lanes.number(t), primitive: id, barycentric })
     }
 
     /// Where the closest hit is, or the range ends.
@@ -173,12 +172,4 @@ fn ones<L: Lanes>(l: L, DVec3 { x, y, z }: DVec3) -> [L::One; 3] {
 #[inline(always)]
 fn relative<T: Real>([x, y, z]: [T; 3], [ox, oy, oz]: [T; 3]) -> [T; 3] {
     [x - ox, y - oy, z - oz]
-}
-
-/// The hit of one primitive, if it has one.
-#[inline(never)]
-fn confirmed(wide: &Wide, ray: &Ray, range: Interval, primitive: PrimitiveId) -> Option<Hit> {
-    let mut probe = Probe::new(wide.scene, ray, range);
-    probe.test(primitive);
-    probe.best()
 }

@@ -97,8 +97,9 @@ impl Few {
                     difference(all.at(b, place), rays.origin),
                     difference(all.at(c, place), rays.origin),
                 ];
-                if let Some((t, weights, met)) = intersect_triangles(corners, &rays.shear) {
-                    let met = met & min.below(t) & t.below(max);
+                let met = intersect_triangles(corners, &rays.shear, [min, max]);
+                if let Some((t, weights, met)) = met {
+                    let met = met & t.below(max);
                     if L::D::bits(met) != 0 && found(Met { group, place, t, weights, met }) {
                         return;
                     }

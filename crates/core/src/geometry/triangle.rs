@@ -107,21 +107,23 @@ pub struct TriangleHit {
 #[inline(always)] // Returned through memory its result costs as much again as the test.
 pub fn intersect_triangle(corners: [DVec3; 3], ray: &Ray, shear: &Shear) -> Option<TriangleHit> {
     let corners = corners.map(|corner| (corner - ray.origin).to_array());
-    let (t, weights, met) = intersect_triangles(corners, shear)?;
+    let (t, weights, met) = intersect_triangles(corners, shear, [0.0, f64::INFINITY])?;
     met.then(|| TriangleHit { t, barycentric: weights.into() })
 }
 
 /// [`intersect_triangle`] for several triangles, or several rays, side by side: the parameters, the weights, and where
-/// they are those of hits; `None` where there is none at all. `corners` are relative to the rays' origins.
+/// they are those of hits with min < t ≤ max; `None` where there is none at all. `corners` are relative to the rays'
+/// origins.
 #[inline(always)]
 pub fn intersect_triangles<T: Real>(
     corners: [[T; 3]; 3],
     shear: &Shear<T>,
+    [min, max]: [T; 2],
 ) -> Option<(T, [T; 3], T::Mask)> {
     for_each_axis(
         shear,
         #[inline(always)]
-        |shear| sheared(corners, shear),
+        |shear| sheared(corners, shear, [min, max]),
     )
 }
 
@@ -171,7 +173,11 @@ fn parameter<T: Real>(
 
 /// The test for one renaming of the axes; the axis is a constant at each call.
 #[inline(always)]
-fn sheared<T: Real>(corners: [[T; 3]; 3], shear: &Shear<T>) -> Option<(T, [T; 3], T::Mask)> {
+fn sheared<T: Real>(
+    corners: [[T; 3]; 3],
+    shear: &Shear<T>,
+    [min_t, max_t]: [T; 2],
+) -> Option<(T, [T; 3], T::Mask)> {
     let [a, b, c] = corners;
     let corners = [shear.flatten(a), shear.flatten(b), shear.flatten(c)];
     let [u, v, w] = edge_functions(corners);
@@ -189,6 +195,11 @@ fn sheared<T: Real>(corners: [[T; 3]; 3], shear: &Shear<T>) -> Option<(T, [T; 3]
     }
     let inverse = det.recip();
     let t = parameter(corners, [u, v, w], shear, inverse);
+    // The plane of a surface that a ray leaves is met outside the range, if only just: no bound is needed there.
+    let met = met & min_t.below(t) & t.at_most(max_t);
+    if T::bits(met) == 0 {
+        return None;
+    }
 
     let times = |factor: f64, x: T| x.all(factor) * x;
     let reach = max_abs(az, bz, cz);
