@@ -297,7 +297,7 @@ impl<'s> Coverage<'s> {
         if self.reached < self.nodes {
             return Err(format!("{} of {} nodes are reached", self.reached, self.nodes));
         }
-        match self.seen.iter().position(|seen| seen.is_empty()) {
+        match self.seen.iter().position(SmallVec::is_empty) {
             Some(missing) => Err(format!("{:?} is in no leaf", self.all.get(missing))),
             None => Ok(()),
         }

@@ -217,9 +217,8 @@ mod tests {
     /// A ball of glass and one of mirror before a matte mesh, under two lamps.
     fn scene() -> Scene {
         let mut scene = Scene::of_mesh(icosphere(2));
-        let glass =
-            Material { k_s: Rgb::splat(0.2), k_t: Rgb::splat(0.8), ..scene.materials[0].clone() };
-        let mirror = Material { k_s: Rgb::new(0.9, 0.7, 0.5), ..scene.materials[0].clone() };
+        let glass = Material { k_s: Rgb::splat(0.2), k_t: Rgb::splat(0.8), ..scene.materials[0] };
+        let mirror = Material { k_s: Rgb::new(0.9, 0.7, 0.5), ..scene.materials[0] };
         scene.materials.extend([Material { refractive_index: 1.5, ..glass }, mirror]);
         for (x, material) in [(-1.0, 1), (1.1, 2)] {
             let shape = Sphere { center: DVec3::new(x, 0.3, 1.2), radius: 0.7 };

@@ -318,7 +318,8 @@ mod tests {
         let place = |k: u32| (DVec3::new(0.8192, 0.6711, 0.5497) * f64::from(k)).fract();
         let corners = |k: u32| {
             // A needle across the cube, or a crumb.
-            let end = if k % 200 == 0 { place(7 * k + 3) } else { place(k) + 0.002 * DVec3::Y };
+            let end =
+                if k.is_multiple_of(200) { place(7 * k + 3) } else { place(k) + 0.002 * DVec3::Y };
             [place(k), end, end + 0.002 * DVec3::X]
         };
         let scene = triangles((0..20_000).map(corners));

@@ -98,7 +98,7 @@ impl Slices {
         let point = |p: Vec3A| FrameBox { min: p, max: p };
         let mut before = point(low);
         let mut is_before_middle = true;
-        for k in first..last + 1 {
+        for (k, slice) in slices.iter_mut().enumerate().take(last + 1).skip(first) {
             let mut part = before;
             if k == last {
                 part = part.union(point(high));
@@ -116,7 +116,7 @@ impl Slices {
                 part = part.union(point(middle));
                 is_before_middle = false;
             }
-            slices[k].bounds = slices[k].bounds.union(part.intersection(whole));
+            slice.bounds = slice.bounds.union(part.intersection(whole));
         }
         slices[first].begin += 1;
         slices[last].end += 1;
