@@ -3,7 +3,7 @@
 //!
 //! Each is exact: it returns the hit of [`lancer_core::intersector::LinearScan`], the same `t` bit for
 //! bit and the same primitive. To that end boxes are culled conservatively and primitives are decided
-//! by one shared `f64` test, [`lancer_core::intersector::Probe`].
+//! by shared `f64` formulas, those of [`lancer_core::intersector::Probe`].
 
 mod binary_tree;
 mod bsp;

@@ -46,7 +46,7 @@ pub const STRUCTURES: [Structure; 9] = [
     },
     Structure {
         name: "wide",
-        bytes_per_primitive: 68,
+        bytes_per_primitive: 76,
         beams: true,
         builder: |all| Built::new(Wide::build(all), Wide::memory),
     },

@@ -6,9 +6,7 @@ use std::ops::AddAssign;
 
 use glam::DVec3;
 
-use crate::geometry::{
-    Bounds3, ConvexVolume, Interval, Ray, Shear, intersect_triangle, solve_triangle,
-};
+use crate::geometry::{Bounds3, ConvexVolume, Interval, Ray, Shear, intersect_triangle};
 use crate::scene::{PrimitiveId, Scene, Shape, Subset};
 
 /// The closest primitive that a ray meets.
@@ -159,8 +157,9 @@ pub trait BeamIndex: Intersector {
     /// visitor returns the new bound, once it knows what hides the rest; larger ones count as the old.
     ///
     /// Primitives beside the volume may come, and one may come twice; none is missed. Near first means
-    /// by [`Scene::depth_in`], as far as the index has boxes around whole primitives: one of cells may
-    /// bring a primitive later, with the cell in which it meets the volume, but not behind its own end.
+    /// by [`Scene::depth_in`], as far as the index has boxes around whole primitives: one of cells, or of
+    /// boxes around parts, may bring a primitive later, with the cell or box in which it meets the volume, but not
+    /// behind its own end.
     fn visit_beam(
         &self,
         volume: &ConvexVolume,
@@ -281,7 +280,8 @@ impl Observer for TestCounts {
 
 /// A ray on its way through an index: the primitive tests, and the closest hit so far.
 ///
-/// Every index decides through it, so the rule which hit wins stands once.
+/// Indexes decide through it, so that the rule which hit wins stands once; `Wide`, where it asks several
+/// primitives at once, takes the first of equals.
 #[derive(Clone, Copy, Debug)]
 pub struct Probe<'s> {
     scene: &'s Scene,
@@ -319,15 +319,6 @@ impl<'s> Probe<'s> {
         let shear = self.shear.get_or_insert_with(|| Shear::new(self.ray.direction));
         intersect_triangle(corners, self.ray, shear)
             .is_some_and(|hit| self.keep(Hit { t: hit.t, primitive, barycentric: hit.barycentric }))
-    }
-
-    /// The same for a triangle that the ray is known to meet, if not where.
-    #[inline(always)]
-    pub fn solve_triangle(&mut self, primitive: PrimitiveId, corners: [DVec3; 3]) -> bool {
-        let shear = self.shear.get_or_insert_with(|| Shear::new(self.ray.direction));
-        let corners = corners.map(|corner| (corner - self.ray.origin).to_array());
-        let (t, barycentric) = solve_triangle(corners, shear);
-        self.keep(Hit { t, primitive, barycentric: barycentric.into() })
     }
 
     /// Keeps a hit that the ray is known to have if it lies in the range, and wins. Returns whether it does.

@@ -121,7 +121,7 @@ impl PixelSampling {
 /// The columns and rows of the most nearly square grid with `samples` cells.
 #[inline]
 fn grid(samples: u32) -> [u32; 2] {
-    if samples == 1 {
+    if samples <= 1 {
         return [1, 1];
     }
     let rows = (1..=samples.isqrt()).rev().find(|rows| samples.is_multiple_of(*rows)).unwrap_or(1);

@@ -13,7 +13,7 @@ use crate::appel::{Appel, Lighting, TO_LIGHT};
 use crate::recorder::{Call, RayCounts, RayKind, Recorder};
 use crate::trace::{Whitted, recursion};
 
-/// Rays of a wave at most.
+/// Rays of a wave after the first, at most; and shadow rays that wait.
 const MOST: usize = 1 << 12;
 
 /// A method that goes on from surfaces or not.
@@ -119,20 +119,17 @@ impl<M: Follow> Estimator<RayCounts> for Waves<M> {
         let (mut wave, mut next) = (Queue::with_capacity(count), Queue::with_capacity(count));
         for (k, sample) in samples.iter().enumerate() {
             let call = Call::primary(&self.rays.through(sample.film.x, sample.film.y));
-            push(&mut wave, To::Sample(k), &call);
+            if self.method.may_wait(&call) {
+                push(&mut wave, To::Sample(k), &call);
+            } else {
+                radiance[k] = self.method.depth_first(call, counts);
+            }
         }
         let mut nodes = Vec::with_capacity(2 * count);
         let mut shadow_rays = Queue::with_capacity(2 * count);
         while !wave.is_empty() {
             self.answer(&mut wave, &mut next, &mut nodes, &mut shadow_rays, radiance, counts);
-            counts.shadow += shadow_rays.len() as u64;
-            let index = self.method.lighting().world.index;
-            shadow_rays.occluded(index, TO_LIGHT, |(node, term), is_occluded| {
-                if !is_occluded {
-                    let node: &mut Node = &mut nodes[node];
-                    node.local += term;
-                }
-            });
+            self.light(&mut shadow_rays, &mut nodes, counts);
             std::mem::swap(&mut wave, &mut next);
         }
         // Calls come after what they return to.
@@ -145,6 +142,23 @@ impl<M: Follow> Estimator<RayCounts> for Waves<M> {
 }
 
 impl<M: Follow> Waves<M> {
+    /// Adds the terms whose shadow rays reach their lights, in the order in which they came: for each node lamp by
+    /// lamp.
+    fn light(
+        &self,
+        shadow_rays: &mut Queue<(usize, Rgb)>,
+        nodes: &mut [Node],
+        counts: &mut RayCounts,
+    ) {
+        counts.shadow += shadow_rays.len() as u64;
+        let index = self.method.lighting().world.index;
+        shadow_rays.occluded(index, TO_LIGHT, |(node, term), is_occluded| {
+            if !is_occluded {
+                nodes[node].local += term;
+            }
+        });
+    }
+
     /// Answers a wave: each surface that it meets becomes a node, with its shadow rays and the rays of the next wave.
     fn answer(
         &self,
@@ -176,6 +190,9 @@ impl<M: Follow> Waves<M> {
                 returned: [Rgb::ZERO; 2],
                 to: waiting.to,
             });
+            if shadow_rays.len() > self.most {
+                self.light(shadow_rays, nodes, counts);
+            }
             for (call, to) in [(refracted, To::Refracted(node)), (mirror, To::Mirror(node))] {
                 let Some(call) = call else { continue };
                 if next.len() < self.most && self.method.may_wait(&call) {

@@ -48,7 +48,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         solution: Solution {
             answer: include_str!("../../solutions/e02_ray_triangle.rs"),
             file: "crates/core/src/geometry/triangle.rs",
-            item: "pub fn intersect_triangle",
+            item: "fn sheared",
             notice: "the shear is worked out once per ray, and t must exceed a bound of its own error, which \
                      the shadow ray's exercise comes back to",
         },

@@ -42,7 +42,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         solution: Solution {
             answer: include_str!("../../solutions/e03_ray_sphere.rs"),
             file: "crates/core/src/geometry/sphere.rs",
-            item: "pub fn intersect",
+            item: "pub fn intersect_spheres",
             notice: "a ray that starts outside and does not approach is sent away before the root is taken, \
                      and the limit of the noise is counted in rounded operations, gamma(8)",
         },

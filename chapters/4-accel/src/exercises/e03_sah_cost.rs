@@ -36,7 +36,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
             answer: include_str!("../../solutions/e03_sah_cost.rs"),
             file: "crates/accel/src/sah.rs",
             item: "pub fn sah_cost",
-            notice: "the hierarchy's own `BinCut::best`, in crates/accel/src/bvh/cuts.rs, tries 15 planes on each \
+            notice: "the hierarchy's own `cheapest_cut`, in crates/accel/src/bvh/cuts.rs, tries 15 planes on each \
                      axis and sums from both ends, so that a split costs O(n)",
         },
     },

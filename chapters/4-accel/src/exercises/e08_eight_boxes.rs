@@ -42,10 +42,11 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         ],
         solution: Solution {
             answer: include_str!("../../solutions/e08_eight_boxes.rs"),
-            file: "crates/accel/src/wide/walk.rs",
-            item: "fn enter",
-            notice: "the rows are chosen when the ray is prepared, not at each node; and push_but_nearest sorts \
-                     integers, since the bits of numbers that are not negative are in the order of the numbers",
+            file: "crates/accel/src/wide/ray.rs",
+            item: "pub(super) fn enter",
+            notice: "which row comes first is a bit per axis, known when the ray is prepared; and push_but_nearest, in \
+                     walk.rs, sorts integers, since the bits of numbers that are not negative are in the order of \
+                     the numbers",
         },
     },
     checks: &[

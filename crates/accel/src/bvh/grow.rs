@@ -182,6 +182,7 @@ pub(super) fn halve(items: &mut [Item]) -> [Content; 2] {
     let (left, right) = items.split_at(middle);
     [left, right].map(|part| Content { bounds: around(part), count: part.len() as u32 })
 }
+
 #[cfg(test)]
 mod tests {
     use glam::Vec3A;

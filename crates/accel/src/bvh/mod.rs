@@ -312,7 +312,8 @@ mod tests {
         }
     }
 
-    /// Long diagonal triangles among small ones are split, no more often than they may be, and alike by any number of threads.
+    /// Long diagonal triangles among small ones are split, no more often than they may be, and alike by any number of
+    /// threads.
     #[test]
     fn needles_are_split_the_same_way_by_any_number_of_threads() {
         let place = |k: u32| (DVec3::new(0.8192, 0.6711, 0.5497) * f64::from(k)).fract();

@@ -268,7 +268,9 @@ impl<'s> Splitter<'s> {
                 [Some(whole), None]
             } else if first > before {
                 [None, Some(whole)]
-            } else if let Some(halves) = self.halves(&item, axis, at) {
+            } else if let Some(halves) =
+                self.halves(&item, axis, at).filter(|halves| halves.iter().any(Option::is_some))
+            {
                 halves
             } else if slices.at(0.5 * item.center())[axis] <= before {
                 [Some(whole), None]

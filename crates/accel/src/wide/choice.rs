@@ -13,8 +13,8 @@ const RAYS: usize = 1024;
 /// What a primitive's test costs in visits of a node: they are tested eight at a time.
 const TEST_COST: f64 = 0.25;
 
-/// What a ray costs on average, in visits of nodes: of [`RAYS`] whose seed is fixed, so that the choice is always the
-/// same.
+/// What a ray costs on average, in visits of nodes: of [`RAYS`] whose seed is fixed, so that the choice is the same
+/// every time with one kind of lanes.
 ///
 /// They begin at primitives drawn without regard to their size, since one looks where there is something to see, and
 /// go anywhere or to another primitive.

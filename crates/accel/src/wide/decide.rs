@@ -8,7 +8,7 @@ use lancer_core::intersector::{Hit, Probe};
 use smallvec::SmallVec;
 
 use super::Wide;
-use super::lanes::{Lanes, gather};
+use super::lanes::{Lanes, difference, gather};
 use super::packet::RAYS;
 
 /// A ray that `f64` decides on, triangle by triangle: by the formulas of [`intersect_triangles`] in lanes of one
@@ -52,7 +52,7 @@ impl<'w, L: Lanes> Decision<'w, L> {
         let [a, b, c] = self.wide.corners(corners);
         let [a, b, c] = [ones(lanes, a), ones(lanes, b), ones(lanes, c)];
         let origin = self.origin;
-        let corners = [relative(a, origin), relative(b, origin), relative(c, origin)];
+        let corners = [difference(a, origin), difference(b, origin), difference(c, origin)];
         let (t, [u, v, w]) = if is_certain {
             solve_triangle(corners, &self.shear)
         } else {
@@ -151,7 +151,7 @@ fn solve_four<L: Lanes>(
     };
     let origin = gather(l, [i.origin, j.origin, k.origin, m.origin]);
     let [a, b, c] = corners;
-    let corners = [relative(a, origin), relative(b, origin), relative(c, origin)];
+    let corners = [difference(a, origin), difference(b, origin), difference(c, origin)];
     let directions = gather(l, [i.direction, j.direction, k.direction, m.direction]);
     let (t, [u, v, w]) = solve_triangle(corners, &Shear::along(axis, directions));
     let (t, u, v, w) = (l.numbers(t), l.numbers(u), l.numbers(v), l.numbers(w));
@@ -167,9 +167,4 @@ fn solve_four<L: Lanes>(
 #[inline(always)]
 fn ones<L: Lanes>(l: L, DVec3 { x, y, z }: DVec3) -> [L::One; 3] {
     [l.one(x), l.one(y), l.one(z)]
-}
-
-#[inline(always)]
-fn relative<T: Real>([x, y, z]: [T; 3], [ox, oy, oz]: [T; 3]) -> [T; 3] {
-    [x - ox, y - oy, z - oz]
 }

@@ -7,7 +7,7 @@ use lancer_core::geometry::{
 use lancer_core::intersector::{Hit, Observer};
 use lancer_core::scene::{PrimitiveId, Shape, Subset};
 
-use super::lanes::{Lanes, gather};
+use super::lanes::{Lanes, difference, gather};
 
 /// So many primitives are asked one and all: a tree would cost more.
 pub(super) const FEW: usize = 16;
@@ -225,7 +225,7 @@ impl Few {
         }
     }
 
-    /// One that the ray meets.
+    /// One that the ray meets. Observers are told of all primitives, whichever is met first.
     #[inline(always)]
     pub(super) fn any<L: Lanes, O: Observer>(
         &self,
@@ -371,11 +371,6 @@ impl<L: Lanes> Everywhere<L> {
     fn at(self, [x, y, z]: &[[f64; FOUR]; 3], place: Option<usize>) -> [L::D; 3] {
         [self.of(x, place), self.of(y, place), self.of(z, place)]
     }
-}
-
-#[inline(always)]
-fn difference<T: Real>(a: [T; 3], b: [T; 3]) -> [T; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ pub(super) struct Bounds {
     length: f32,
 }
 
-/// The bounds of eight triangles: see [`Wide`].
+/// The bounds of eight triangles: see [`super::Wide`].
 #[derive(Clone, Copy)]
 pub(super) struct TriangleBounds<F> {
     e: F,
@@ -70,7 +70,7 @@ pub(super) struct Filtered<F> {
 }
 
 impl<F: Copy> Filtered<F> {
-    /// Keeps what may be a hit before `max`, among the lanes of `valid`: see [`Wide`] for the comparisons.
+    /// Keeps what may be a hit before `max`, among the lanes of `valid`: see [`super::Wide`] for the comparisons.
     #[inline(always)]
     pub(super) fn new<L: Lanes<F = F>>(
         l: L,

@@ -40,8 +40,7 @@ use leaf::{HEADER, RECORD, UNIT, integer_of};
 /// and may be in several leaves, each with a part of its box; rays of a fixed seed try both. [`Wide::fast`] takes the
 /// first.
 ///
-/// *Walked* near to far: eight boxes, then eight triangles are tested together. Rays of one origin are walked
-/// as a packet.
+/// *Walked* near to far: eight boxes, then eight triangles are tested together.
 ///
 /// *Wins* where the processor has vectors of eight (plates 4.7, 4.10). *Loses* what they gain where it has
 /// none, and to [`crate::ObvhsCwbvh`] in memory.
@@ -171,7 +170,7 @@ impl Child {
 }
 
 impl<'s> Wide<'s> {
-    /// Builds the tree.
+    /// Builds the tree; of up to 16 primitives there is none.
     pub fn build(primitives: impl Into<Subset<'s>>) -> Self {
         Self::with_kernel(primitives.into(), Kernel::best())
     }

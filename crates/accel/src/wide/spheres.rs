@@ -5,7 +5,7 @@ use lancer_core::geometry::{Interval, Ray, Real, intersect_spheres};
 use lancer_core::intersector::{Hit, Probe};
 use lancer_core::scene::{PrimitiveId, Shape};
 
-use super::lanes::{Lanes, gather};
+use super::lanes::{Lanes, difference, gather};
 use super::{Child, Wide};
 use crate::pending::Lanes as Bits;
 
@@ -69,8 +69,7 @@ fn test_four<L: Lanes>(
 ) {
     let [origin, direction] =
         [gather(lanes, [ray.origin; FOUR]), gather(lanes, [ray.direction; FOUR])];
-    let [x, y, z] = gather(lanes, centers);
-    let f = [origin[0] - x, origin[1] - y, origin[2] - z];
+    let f = difference(origin, gather(lanes, centers));
     let [min, endless] = [lanes.four([range.min; FOUR]), lanes.four([f64::INFINITY; FOUR])];
     let met = intersect_spheres(f, lanes.four(radii), direction, [min, endless]);
     let Some((t, met)) = met else { return };

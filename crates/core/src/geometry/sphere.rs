@@ -68,7 +68,8 @@ pub fn intersect_spheres<T: Real>(
     let in_order = by_product.below(by_sum);
     let near = T::select(in_order, by_product, by_sum);
     let far = T::select(in_order, by_sum, by_product);
-    let (min, max) = (min.larger(zero), max.smaller(zero.all(f64::INFINITY)));
+    // What is compared with NaN last is NaN, and so no hit.
+    let (min, max) = (zero.larger(min), zero.all(f64::INFINITY).smaller(max));
     let t = T::select(min.below(near) & near.below(max), near, far);
     Some((t, meets & min.below(t) & t.below(max)))
 }

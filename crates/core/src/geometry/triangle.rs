@@ -201,7 +201,6 @@ fn sheared<T: Real>(
         return None;
     }
 
-    let times = |factor: f64, x: T| x.all(factor) * x;
     let reach = max_abs(az, bz, cz);
     let (max_x, max_y) = (max_abs(ax, bx, cx), max_abs(ay, by, cy));
     let max_z = max_abs(shear.z * az, shear.z * bz, shear.z * cz);
@@ -215,6 +214,11 @@ fn sheared<T: Real>(
     // An accepting comparison: a NaN anywhere above ends here as a miss.
     let met = met & dt.below(t) & t.below(zero.all(f64::INFINITY));
     Some((t, [u * inverse, v * inverse, w * inverse], met))
+}
+
+#[inline(always)]
+fn times<T: Real>(factor: f64, x: T) -> T {
+    x.all(factor) * x
 }
 
 /// Whether the ray, at 0 in sheared coordinates, lies outside the range of three corners.

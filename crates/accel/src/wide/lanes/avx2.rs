@@ -1,6 +1,5 @@
-//! Every intrinsic here needs AVX2 or FMA and nothing else: a value
-//! of [`Avx2`] exists only where the processor was found to have both. Loads and stores go through
-//! references or slices whose lengths are checked.
+//! Every intrinsic here needs AVX2 or FMA: a value of [`Avx2`] exists only where the processor was found to have both,
+//! and what [`Avx2::call`] compiles for. Loads and stores go through references or slices whose lengths are checked.
 
 use std::arch::asm;
 use std::arch::x86_64::*;
@@ -10,7 +9,7 @@ use lancer_core::geometry::Real;
 
 use super::Lanes;
 
-/// A processor with AVX2 and FMA.
+/// A processor with AVX2, FMA, BMI1, BMI2, LZCNT and POPCNT.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::wide) struct Avx2(());
 
@@ -329,6 +328,7 @@ impl Lanes for Avx2 {
         fn inner<R>(lanes: Avx2, f: impl FnOnce(Avx2) -> R) -> R {
             f(lanes)
         }
+        // SAFETY: as in `call`.
         unsafe { inner(self, f) }
     }
 }

@@ -101,6 +101,12 @@ pub(super) fn dot<L: Lanes>(l: L, a: Vectors<L>, b: Vectors<L>) -> L::F {
     l.mul_add(a[0], b[0], l.mul_add(a[1], b[1], l.mul(a[2], b[2])))
 }
 
+/// a − b
+#[inline(always)]
+pub(super) fn difference<T: Real>(a: [T; 3], b: [T; 3]) -> [T; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
 /// The components of four vectors.
 #[inline(always)]
 pub(super) fn gather<L: Lanes>(l: L, [a, b, c, d]: [DVec3; 4]) -> [L::D; 3] {
