@@ -56,7 +56,7 @@ impl FrameBox {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// The box between two points of a frame, rounded outwards by more than the primitive test can err.
+    /// The box between two points of a frame, rounded outwards by more than the primitive test errs, unless a ray runs nearly in its plane.
     pub(crate) fn around(min: DVec3, max: DVec3) -> Self {
         let margin = f64::from(f32::EPSILON);
         let min = (min - margin).as_vec3a().to_array().map(f32::next_down);
@@ -137,7 +137,7 @@ impl Frame {
         Bounds3 { min: self.center + min - rounding(min), max: self.center + max + rounding(max) }
     }
 
-    /// A box in this frame, rounded outwards by more than the primitive test can err.
+    /// A box in this frame, rounded outwards by more than the primitive test errs, unless a ray runs nearly in its plane.
     pub(crate) fn outwards(&self, bounds: Bounds3) -> FrameBox {
         FrameBox::around(self.point(bounds.min), self.point(bounds.max))
     }

@@ -150,31 +150,14 @@ pub fn lit<I: Fn(DVec3) -> Rgb>(
     mut visible: impl FnMut(&Ray) -> bool,
 ) -> Rgb {
     let mut radiance = unlit;
-    unshadowed(reflectance, n, to_eye, arriving, |shadow_ray, term| {
-        if visible(shadow_ray) {
-            radiance += term;
-        }
-    });
-    radiance
-}
-
-/// Tells the terms of the sum of [`lit`] that are not 0, light by light, as they are with vis(i) = 1, each with the
-/// shadow ray that decides on it.
-#[inline]
-pub fn unshadowed<I: Fn(DVec3) -> Rgb>(
-    reflectance: &Reflectance,
-    n: DVec3,
-    to_eye: DVec3,
-    arriving: impl IntoIterator<Item = Arriving<I>>,
-    mut term: impl FnMut(&Ray, Rgb),
-) {
     if reflectance.diffuse == Rgb::ZERO && reflectance.specular == Rgb::ZERO {
-        return;
+        return radiance;
     }
     for light in arriving {
         let unshadowed = light.unshadowed(reflectance, n, to_eye);
-        if unshadowed != Rgb::ZERO {
-            term(&light.shadow_ray, unshadowed);
+        if unshadowed != Rgb::ZERO && visible(&light.shadow_ray) {
+            radiance += unshadowed;
         }
     }
+    radiance
 }

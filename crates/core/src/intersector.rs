@@ -313,9 +313,8 @@ impl<'s> Probe<'s> {
         }
     }
 
-    /// The same for a triangle whose corners are known.
     #[inline(always)]
-    pub fn test_triangle(&mut self, primitive: PrimitiveId, corners: [DVec3; 3]) -> bool {
+    fn test_triangle(&mut self, primitive: PrimitiveId, corners: [DVec3; 3]) -> bool {
         let shear = self.shear.get_or_insert_with(|| Shear::new(self.ray.direction));
         intersect_triangle(corners, self.ray, shear)
             .is_some_and(|hit| self.keep(Hit { t: hit.t, primitive, barycentric: hit.barycentric }))

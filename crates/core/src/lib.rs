@@ -17,7 +17,6 @@ pub mod intersector;
 pub mod method;
 pub mod metric;
 pub mod optics;
-pub mod queue;
 pub mod render;
 pub mod sampling;
 pub mod scene;

@@ -1,7 +1,7 @@
 use glam::DVec3;
 use lancer_core::Rgb;
 use lancer_core::geometry::{Interval, Ray};
-use lancer_core::illumination::{Arriving, Reflectance, ambient, lit, unshadowed};
+use lancer_core::illumination::{ambient, lit};
 use lancer_core::intersector::Hit;
 use lancer_core::scene::PointSource;
 use lancer_core::world::{SurfacePoint, World};
@@ -35,50 +35,19 @@ impl<'a> Lighting<'a> {
         to_eye: DVec3,
         recorder: &mut R,
     ) -> Rgb {
-        let reflectance = self.world.scene.reflectance(surface);
-        let unlit = self.unlit(surface, &reflectance, to_eye);
-        let radiance = lit(unlit, &reflectance, n, to_eye, self.arriving(surface), |shadow_ray| {
-            let visible = !self.world.index.occluded(shadow_ray, TO_LIGHT);
+        let World { scene, index } = self.world;
+        let reflectance = scene.reflectance(surface);
+        let unlit = ambient(reflectance.diffuse, scene.ambient) + scene.emitted(surface, to_eye);
+        let arriving = self.sources.iter().map(|source| source.arriving(surface));
+        let radiance = lit(unlit, &reflectance, n, to_eye, arriving, |shadow_ray| {
+            let visible = !index.occluded(shadow_ray, Interval::up_to(1.0));
             recorder.shadow(shadow_ray, visible);
             visible
         });
         recorder.local(radiance);
         radiance
     }
-
-    /// The same as a queue has it: what the surface sends unlit, which is returned, and the terms to add where their
-    /// shadow rays are not occluded.
-    #[inline]
-    pub(crate) fn queued(
-        &self,
-        surface: &SurfacePoint,
-        n: DVec3,
-        to_eye: DVec3,
-        term: impl FnMut(&Ray, Rgb),
-    ) -> Rgb {
-        let reflectance = self.world.scene.reflectance(surface);
-        unshadowed(&reflectance, n, to_eye, self.arriving(surface), term);
-        self.unlit(surface, &reflectance, to_eye)
-    }
-
-    #[inline]
-    fn arriving(
-        &self,
-        surface: &SurfacePoint,
-    ) -> impl Iterator<Item = Arriving<impl Fn(DVec3) -> Rgb>> {
-        self.sources.iter().map(|source| source.arriving(surface))
-    }
-
-    /// ε + ρ̄ I_a
-    #[inline]
-    fn unlit(&self, surface: &SurfacePoint, reflectance: &Reflectance, to_eye: DVec3) -> Rgb {
-        let scene = self.world.scene;
-        ambient(reflectance.diffuse, scene.ambient) + scene.emitted(surface, to_eye)
-    }
 }
-
-/// Where something is in a shadow ray's way.
-pub(crate) const TO_LIGHT: Interval = Interval::up_to(1.0);
 
 /// The method of Appel (1968): what the eye sees and which lights see it too.
 ///
@@ -90,7 +59,7 @@ pub(crate) const TO_LIGHT: Interval = Interval::up_to(1.0);
 ///   « Élimination des parties cachées », « Modèle Local ».
 #[derive(Clone)]
 pub struct Appel<'a> {
-    pub(crate) lighting: Lighting<'a>,
+    lighting: Lighting<'a>,
 }
 
 impl<'a> Appel<'a> {

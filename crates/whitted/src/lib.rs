@@ -16,7 +16,6 @@ mod methods;
 mod ray_tree;
 mod recorder;
 mod trace;
-mod waves;
 
 pub use appel::{Appel, Lighting};
 pub use methods::METHODS;

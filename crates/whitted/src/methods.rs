@@ -1,7 +1,7 @@
 use lancer_core::method::{Effect, Method, SAMPLES, Setting, Work, WorkKind};
+use lancer_core::render::PrimaryHits;
 use lancer_core::world::World;
 
-use crate::waves::Waves;
 use crate::{Appel, RayCounts, Settings, Whitted};
 
 /// The chapter's methods.
@@ -15,7 +15,12 @@ pub static METHODS: [Method; 2] = [
         render: |order| {
             let index = (order.index)(order.scene.into());
             let world = World { scene: order.scene, index: &*index };
-            order.sample(Waves::new(Appel::new(world), order.size))
+            let appel = Appel::new(world);
+            order.sample(PrimaryHits::new(
+                world,
+                order.size,
+                |ray, hit, _, counts: &mut RayCounts| appel.shade(ray, hit, counts),
+            ))
         },
     },
     Method {
@@ -28,7 +33,11 @@ pub static METHODS: [Method; 2] = [
             let index = (order.index)(order.scene.into());
             let world = World { scene: order.scene, index: &*index };
             let whitted = Whitted::new(world, Settings::to_depth(order.max_depth));
-            order.sample(Waves::new(whitted, order.size))
+            order.sample(PrimaryHits::new(
+                world,
+                order.size,
+                |ray, hit, _, counts: &mut RayCounts| whitted.shade(ray, hit, counts),
+            ))
         },
     },
 ];

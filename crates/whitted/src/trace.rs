@@ -83,7 +83,7 @@ pub fn recursion(local: Rgb, k_s: Rgb, reflected: Rgb, k_t: Rgb, refracted: Rgb)
 ///   « Intensité lumineuse sur un rayon », « Algorithme ».
 #[derive(Clone)]
 pub struct Whitted<'a> {
-    pub(crate) lighting: Lighting<'a>,
+    lighting: Lighting<'a>,
     settings: Settings,
 }
 
@@ -118,7 +118,7 @@ impl<'a> Whitted<'a> {
         self.lr_with(Call::primary(ray), recorder, |_| hit)
     }
 
-    pub(crate) fn lr<R: Recorder>(&self, call: Call, recorder: &mut R) -> Rgb {
+    fn lr<R: Recorder>(&self, call: Call, recorder: &mut R) -> Rgb {
         let index = self.lighting.world.index;
         self.lr_with(call, recorder, |ray| index.closest_hit(ray, Interval::POSITIVE))
     }
@@ -131,11 +131,12 @@ impl<'a> Whitted<'a> {
         recorder: &mut R,
         first_hit: impl Fn(&Ray) -> Option<Hit>,
     ) -> Rgb {
-        let radiance = if self.is_followed(&call) {
-            self.follow(&call, recorder, first_hit)
-        } else {
-            self.at_limit(call, recorder, first_hit)
-        };
+        let radiance =
+            if call.depth > self.settings.max_depth || call.weight < self.settings.min_weight {
+                self.at_limit(call, recorder, first_hit)
+            } else {
+                self.follow(&call, recorder, first_hit)
+            };
         recorder.leave(radiance);
         radiance
     }
@@ -167,35 +168,19 @@ impl<'a> Whitted<'a> {
         recorder: &mut R,
     ) -> Rgb {
         let incident = call.ray.direction;
+        let material = self.lighting.world.scene.material(surface.material);
         let n = surface.shading_normal_towards(-incident);
         let local = self.lighting.surface(surface, n, -incident, recorder);
 
-        let [mirror, refracted] = self.branches(call, surface);
-        let mut follow = |(k, next): (Rgb, Option<Call>)| {
-            (k, next.map_or(Rgb::ZERO, |next| self.lr(next, recorder)))
+        let branches = Branches::new(surface, material, incident);
+        let [k_s, k_t] = branches.shares();
+        let mut follow = |branch: Option<(Rgb, DVec3)>, kind| match branch {
+            Some((k, direction)) => self.lr(call.next(surface, direction, k, kind), recorder),
+            None => Rgb::ZERO,
         };
-        let (k_t, refracted) = follow(refracted);
-        let (k_s, reflected) = follow(mirror);
+        let refracted = follow(branches.refracted, RayKind::Refracted);
+        let reflected = follow(branches.mirror, RayKind::Mirror);
         recursion(local, k_s, reflected, k_t, refracted)
-    }
-
-    /// The calls that go on from a surface, by the mirror and by the refracted ray, and the shares k_s and k_t of what they
-    /// return.
-    #[inline]
-    pub(crate) fn branches(&self, call: &Call, surface: &SurfacePoint) -> [(Rgb, Option<Call>); 2] {
-        let material = self.lighting.world.scene.material(surface.material);
-        let branches = Branches::new(surface, material, call.ray.direction);
-        let next = |branch: Option<(Rgb, DVec3)>, kind| match branch {
-            Some((k, direction)) => (k, Some(call.next(surface, direction, k, kind))),
-            None => (Rgb::ZERO, None),
-        };
-        [next(branches.mirror, RayKind::Mirror), next(branches.refracted, RayKind::Refracted)]
-    }
-
-    /// Whether a call is followed, whatever it meets.
-    #[inline]
-    pub(crate) fn is_followed(&self, call: &Call) -> bool {
-        call.depth <= self.settings.max_depth && call.weight >= self.settings.min_weight
     }
 
     fn at_limit<R: Recorder>(

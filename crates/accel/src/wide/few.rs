@@ -249,40 +249,6 @@ impl Few {
         );
         any
     }
-
-    /// Whether many rays meet anything.
-    #[inline(always)]
-    pub(super) fn occluded<L: Lanes>(
-        &self,
-        lanes: L,
-        rays: &[Ray],
-        range: Interval,
-        occluded: &mut [bool],
-    ) {
-        for (rays, occluded) in rays.chunks(FOUR).zip(occluded.chunks_mut(FOUR)) {
-            if let Some(four) = Rays::four(lanes, rays) {
-                let mut bits = 0;
-                self.ask(
-                    lanes,
-                    &four,
-                    &APART,
-                    range,
-                    #[inline(always)]
-                    |met| {
-                        bits |= L::D::bits(met.met);
-                        bits == (1 << FOUR) - 1
-                    },
-                );
-                for (lane, occluded) in occluded.iter_mut().enumerate() {
-                    *occluded = bits >> lane & 1 != 0;
-                }
-            } else {
-                for (ray, occluded) in rays.iter().zip(occluded) {
-                    *occluded = self.any(lanes, ray, range, &mut ()).is_some();
-                }
-            }
-        }
-    }
 }
 
 /// The places of a group are asked about together, one in each lane.

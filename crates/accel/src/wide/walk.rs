@@ -518,17 +518,3 @@ pub(super) fn any<L: Lanes, O: Observer>(
     let _ = walk(lanes, wide, &mut any, observer);
     any.found
 }
-
-/// Whether each of many rays has any hit.
-#[inline(always)]
-pub(super) fn any_each<L: Lanes>(
-    lanes: L,
-    wide: &Wide,
-    rays: &[Ray],
-    range: Interval,
-    occluded: &mut [bool],
-) {
-    for (ray, occluded) in rays.iter().zip(occluded) {
-        *occluded = any(lanes, wide, ray, range, &mut ()).is_some();
-    }
-}
