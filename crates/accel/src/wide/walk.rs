@@ -218,23 +218,28 @@ fn near(entry: u64) -> f32 {
 /// Marks a candidate that `f64` must accept: no record is as far on.
 const CERTAIN: u32 = 1 << 31;
 
-/// A ray on its way to the closest hit.
-struct Closest<'w, L: Lanes> {
+/// A ray on its way through the tree.
+struct Single<'w, L: Lanes, G> {
     lanes: L,
     wide: &'w Wide<'w>,
     ray: &'w Ray,
     range: Interval,
     in_frame: &'w WideRay,
-    /// The closest hit that `f64` has decided on: none, as a rule, until the walk ends.
-    early: &'w mut Option<Hit>,
-    /// Candidates for the closest hit, each with the lower end of where it may be.
-    candidates: Stack<'w, CANDIDATES>,
-    /// Nothing beyond this parameter can be the closest hit.
+    /// Nothing beyond this parameter is of interest.
     max: f32,
+    goal: G,
 }
 
-impl<L: Lanes> Walker<L> for Closest<'_, L> {
-    const SORTS: bool = true;
+/// What a ray looks for.
+trait Goal: Sized {
+    /// Whether what is near is of more interest.
+    const SORTS: bool;
+    /// Sorts out the primitives of a leaf. The walk may be over.
+    fn visit<L: Lanes>(single: &mut Single<'_, L, Self>, leaf: Child) -> ControlFlow<()>;
+}
+
+impl<L: Lanes, G: Goal> Walker<L> for Single<'_, L, G> {
+    const SORTS: bool = G::SORTS;
 
     type Boxes = Boxes<L>;
 
@@ -249,25 +254,42 @@ impl<L: Lanes> Walker<L> for Closest<'_, L> {
     }
 
     #[inline(always)]
+    fn visit(&mut self, leaf: Child) -> ControlFlow<()> {
+        self.in_frame = self.lanes.read_here(self.in_frame);
+        G::visit(self, leaf)
+    }
+
+    #[inline(always)]
     fn max(&self) -> f32 {
         self.max
     }
+}
 
-    /// Sorts out the triangles of a leaf.
+/// The closest hit.
+struct Closest<'w> {
+    /// What `f64` has decided on: nothing, as a rule, until the walk ends.
+    early: &'w mut Option<Hit>,
+    /// Candidates, each with the lower end of where it may be.
+    candidates: Stack<'w, CANDIDATES>,
+}
+
+impl Goal for Closest<'_> {
+    const SORTS: bool = true;
+
     #[inline(always)]
-    fn visit(&mut self, leaf: Child) -> ControlFlow<()> {
-        self.in_frame = self.lanes.read_here(self.in_frame);
-        let (wide, lanes, ray) = (self.wide, self.lanes, self.in_frame);
+    fn visit<L: Lanes>(single: &mut Single<'_, L, Self>, leaf: Child) -> ControlFlow<()> {
+        let (wide, lanes, ray) = (single.wide, single.lanes, single.in_frame);
         if leaf.has_spheres() {
-            let end = spheres::test(lanes, wide, leaf, self.ray, self.range, self.early);
-            self.max = self.max.min(ray.slabs.parameter(end));
+            let early = &mut *single.goal.early;
+            let end = spheres::test(lanes, wide, leaf, single.ray, single.range, early);
+            single.max = single.max.min(ray.slabs.parameter(end));
             return ControlFlow::Continue(());
         }
-        let filtered = ray.filter(lanes, wide.words(leaf), leaf.count(), self.max);
+        let filtered = ray.filter(lanes, wide.words(leaf), leaf.count(), single.max);
         if filtered.kept == 0 {
             return ControlFlow::Continue(());
         }
-        let (certain, lowest, highest) = filtered.certain(lanes, ray.least(self.range));
+        let (certain, lowest, highest) = filtered.certain(lanes, ray.least(single.range));
         let lowest = lanes.store(lanes.max(lowest, lanes.splat(0.0)));
         let highest = lanes.store(highest);
         for lane in Bits::<WIDTH>(filtered.kept) {
@@ -275,26 +297,26 @@ impl<L: Lanes> Walker<L> for Closest<'_, L> {
             let mut what = record;
             if certain >> lane & 1 != 0 {
                 what |= CERTAIN;
-                if highest[lane] < self.max {
-                    self.max = highest[lane];
+                if highest[lane] < single.max {
+                    single.max = highest[lane];
                 }
             }
-            self.candidates.push(key(lowest[lane], what));
+            single.goal.candidates.push(key(lowest[lane], what));
         }
-        if self.candidates.length > CANDIDATES - WIDTH {
-            self.make_room();
+        if single.goal.candidates.length > CANDIDATES - WIDTH {
+            single.make_room();
         }
         ControlFlow::Continue(())
     }
 }
 
-impl<L: Lanes> Closest<'_, L> {
+impl<L: Lanes> Single<'_, L, Closest<'_>> {
     /// Decides on the candidates, so that there is room for others.
     #[inline(always)]
     fn make_room(&mut self) {
         let (wide, ray, range, max) = (self.wide, self.ray, self.range, self.max);
-        let (candidates, slabs) = (self.candidates.take(), &self.in_frame.slabs);
-        let early = &mut *self.early;
+        let (candidates, slabs) = (self.goal.candidates.take(), &self.in_frame.slabs);
+        let early = &mut *self.goal.early;
         let end = self.lanes.apart(
             #[inline(always)]
             move |lanes| {
@@ -368,11 +390,10 @@ fn closest_or<L: Lanes, O: Observer>(
     let max = in_frame.slabs.parameter(range.max);
     let mut space = Stack::SPACE;
     let mut early = None;
-    let candidates = Stack::new(&mut space);
-    let mut closest =
-        Closest { lanes, wide, ray, range, in_frame, early: &mut early, candidates, max };
-    let _ = walk(lanes, wide, &mut closest, observer);
-    let Closest { mut candidates, max, early, .. } = closest;
+    let goal = Closest { early: &mut early, candidates: Stack::new(&mut space) };
+    let mut single = Single { lanes, wide, ray, range, in_frame, max, goal };
+    let _ = walk(lanes, wide, &mut single, observer);
+    let Single { max, goal: Closest { mut candidates, early }, .. } = single;
     let early = *early;
     if early.is_none() {
         let last = candidates.pop()? as u32;
@@ -417,65 +438,37 @@ pub(super) fn closest_each<L: Lanes>(
     certain.solve(lanes, wide, rays, range, hits);
 }
 
-/// A ray on its way to any hit.
-struct Any<'w, L: Lanes> {
-    lanes: L,
-    wide: &'w Wide<'w>,
-    ray: &'w Ray,
-    range: Interval,
-    in_frame: &'w WideRay,
-    max: f32,
-    /// What it meets.
-    found: Option<PrimitiveId>,
-}
+/// Any hit: what the ray meets.
+struct Any(Option<PrimitiveId>);
 
-impl<L: Lanes> Walker<L> for Any<'_, L> {
+impl Goal for Any {
     const SORTS: bool = false;
 
-    type Boxes = Boxes<L>;
-
     #[inline(always)]
-    fn boxes(&self) -> Boxes<L> {
-        self.in_frame.boxes(self.lanes, self.max)
-    }
-
-    #[inline(always)]
-    fn enter(&mut self, boxes: &Boxes<L>, node: &Node) -> (L::F, u32) {
-        boxes.enter(self.lanes, node)
-    }
-
-    #[inline(always)]
-    fn max(&self) -> f32 {
-        self.max
-    }
-
-    /// Looks for a primitive of a leaf that the ray meets.
-    #[inline(always)]
-    fn visit(&mut self, leaf: Child) -> ControlFlow<()> {
-        self.in_frame = self.lanes.read_here(self.in_frame);
-        let (wide, lanes, ray) = (self.wide, self.lanes, self.in_frame);
+    fn visit<L: Lanes>(single: &mut Single<'_, L, Self>, leaf: Child) -> ControlFlow<()> {
+        let (wide, lanes, ray) = (single.wide, single.lanes, single.in_frame);
         let mut kept = 0;
         if !leaf.has_spheres() {
-            let filtered = ray.filter(lanes, wide.words(leaf), leaf.count(), self.max);
+            let filtered = ray.filter(lanes, wide.words(leaf), leaf.count(), single.max);
             if filtered.kept == 0 {
                 return ControlFlow::Continue(());
             }
             kept = filtered.kept;
-            let (certain, _, highest) = filtered.certain(lanes, ray.least(self.range));
-            let before_end = lanes.splat(ray.slabs.parameter_below(self.range.max));
+            let (certain, _, highest) = filtered.certain(lanes, ray.least(single.range));
+            let before_end = lanes.splat(ray.slabs.parameter_below(single.range.max));
             let certain = certain & lanes.above(before_end, highest);
             if certain != 0 {
                 let lane = certain.trailing_zeros() as usize % WIDTH;
-                self.found = Some(wide.triangle(Wide::record(leaf, lane)).0);
+                single.goal = Self(Some(wide.triangle(Wide::record(leaf, lane)).0));
                 return ControlFlow::Break(());
             }
         }
-        self.found = self.test(leaf, kept);
-        if self.found.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        single.goal = Self(single.test(leaf, kept));
+        if single.goal.0.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
 
-impl<L: Lanes> Any<'_, L> {
+impl<L: Lanes> Single<'_, L, Any> {
     /// Lets `f64` decide on what the filter kept of a leaf, or on its spheres. Returns what the ray meets.
     #[inline(always)]
     fn test(&self, leaf: Child, kept: u32) -> Option<PrimitiveId> {
@@ -514,7 +507,7 @@ pub(super) fn any<L: Lanes, O: Observer>(
     }
     let in_frame = &WideRay::new(lanes, wide, ray);
     let max = in_frame.slabs.parameter(range.max);
-    let mut any = Any { lanes, wide, ray, range, in_frame, max, found: None };
-    let _ = walk(lanes, wide, &mut any, observer);
-    any.found
+    let mut single = Single { lanes, wide, ray, range, in_frame, max, goal: Any(None) };
+    let _ = walk(lanes, wide, &mut single, observer);
+    single.goal.0
 }

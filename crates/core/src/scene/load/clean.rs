@@ -13,8 +13,6 @@ pub(super) struct Lines<'a> {
     reader: BufReader<Box<dyn Read + 'a>>,
     bytes: Vec<u8>,
     after_cr: bool,
-    /// Bytes of the reader's buffer that the last line stands in.
-    lent: usize,
     /// Physical lines read so far.
     read: usize,
 }
@@ -24,7 +22,7 @@ impl<'a> Lines<'a> {
     /// When the file cannot be read, or is UTF-16 text.
     pub fn new(file: &'a str, source: Box<dyn Read + 'a>) -> Result<Self, LoadError> {
         let reader = BufReader::with_capacity(1 << 16, source);
-        let mut lines = Self { file, reader, bytes: Vec::new(), after_cr: false, lent: 0, read: 0 };
+        let mut lines = Self { file, reader, bytes: Vec::new(), after_cr: false, read: 0 };
         let start = lines.peek()?;
         if start.starts_with(&[0xEF, 0xBB, 0xBF]) {
             lines.reader.consume(3);
@@ -38,20 +36,8 @@ impl<'a> Lines<'a> {
 
     /// The next logical line and the number of its first physical line, from 1.
     pub fn next(&mut self) -> Result<Option<(usize, &str)>, LoadError> {
-        self.reader.consume(std::mem::take(&mut self.lent));
-        if let (true, Some(&next)) = (self.after_cr, self.reader.buffer().first()) {
-            self.reader.consume(usize::from(next == b'\n'));
-            self.after_cr = false;
-        }
-        let first = self.read + 1;
-        if let Some(end) = self.line_in_buffer() {
-            let line = &self.reader.buffer()[..end];
-            self.after_cr = self.reader.buffer()[end] == b'\r';
-            self.lent = end + 1;
-            self.read = first;
-            return Ok(Some((first, str::from_utf8(line).unwrap_or_default())));
-        }
         self.bytes.clear();
+        let first = self.read + 1;
         while self.append_line()? {
             // A comment's final backslash is part of a path in it more often than a continuation.
             if self.bytes.last() != Some(&b'\\') || self.bytes.trim_ascii_start().starts_with(b"#")
@@ -71,16 +57,6 @@ impl<'a> Lines<'a> {
         Ok(Some((first, str::from_utf8(&self.bytes).unwrap_or_default())))
     }
 
-    /// Where the next line ends, if it is one that can be lent from the reader's buffer as it is.
-    fn line_in_buffer(&self) -> Option<usize> {
-        let buffer = self.reader.buffer();
-        let end = line_end(buffer)?;
-        let line = &buffer[..end];
-        let is_as_it_is =
-            line.last() != Some(&b'\\') && (line.is_ascii() || str::from_utf8(line).is_ok());
-        is_as_it_is.then_some(end)
-    }
-
     /// Appends one physical line without its end; `false` at the end of the file.
     fn append_line(&mut self) -> Result<bool, LoadError> {
         let mut found = false;
@@ -96,7 +72,7 @@ impl<'a> Lines<'a> {
                     self.reader.consume(1);
                     continue;
                 }
-                _ => match line_end(buffer) {
+                _ => match buffer.iter().position(|b| matches!(b, b'\n' | b'\r')) {
                     Some(end) => (end, Some(buffer[end])),
                     None => (buffer.len(), None),
                 },
@@ -128,51 +104,6 @@ impl<'a> Lines<'a> {
             }
         }
     }
-}
-
-/// Where the first line ends.
-fn line_end(bytes: &[u8]) -> Option<usize> {
-    let ends = |byte: &u8| matches!(byte, b'\n' | b'\r');
-    // Looking at all 16 is faster than stopping at the right one.
-    let without = |block: &&[u8]| !block.iter().fold(false, |found, byte| found | ends(byte));
-    let start = 16 * bytes.chunks_exact(16).take_while(without).count();
-    Some(start + bytes[start..].iter().position(ends)?)
-}
-
-/// The words of a text, as [`str::split_whitespace`] finds them; in ASCII without decoding.
-pub(super) fn words(text: &str) -> Words<'_> {
-    Words { rest: text, is_ascii: text.is_ascii() }
-}
-
-#[derive(Clone)]
-pub(super) struct Words<'a> {
-    rest: &'a str,
-    is_ascii: bool,
-}
-
-impl<'a> Iterator for Words<'a> {
-    type Item = &'a str;
-
-    #[inline]
-    fn next(&mut self) -> Option<&'a str> {
-        let (start, end) = if self.is_ascii {
-            let mut bytes = self.rest.bytes();
-            let start = bytes.position(|byte| !is_space(byte))?;
-            (start, bytes.position(is_space).map(|length| start + 1 + length))
-        } else {
-            let start = self.rest.find(|c: char| !c.is_whitespace())?;
-            (start, self.rest[start..].find(char::is_whitespace).map(|length| start + length))
-        };
-        let end = end.unwrap_or(self.rest.len());
-        let word = &self.rest[start..end];
-        self.rest = &self.rest[end..];
-        Some(word)
-    }
-}
-
-/// Those characters of ASCII that [`char::is_whitespace`] means.
-fn is_space(byte: u8) -> bool {
-    matches!(byte, b'\t'..=b'\r' | b' ')
 }
 
 #[cfg(test)]
@@ -210,29 +141,6 @@ mod tests {
         assert_eq!(lines(b"f 1\\\r\n2\\\r\n3\r\nv"), numbered(&[(1, "f 1 2 3"), (4, "v")]));
         assert_eq!(lines(b"f 1 \\"), numbered(&[(1, "f 1  ")]));
         assert_eq!(lines(b"# in C:\\\nv"), numbered(&[(1, "# in C:\\"), (2, "v")]));
-    }
-
-    #[test]
-    fn words_are_those_of_the_standard_library() {
-        let all: String = ('\0'..='\u{3001}').map(|c| format!("a{c}b")).collect();
-        for text in ["", " ", "v", " 1 2\t\u{b}3 ", "a\u{1c}b", "1\u{a0}2\u{2003}", &all] {
-            assert!(words(text).eq(text.split_whitespace()), "{text:?}");
-        }
-    }
-
-    /// Ends on both sides of where blocks of bytes meet.
-    #[test]
-    fn lines_of_every_length_end_where_they_end() {
-        for length in 0..70 {
-            let line = "x".repeat(length);
-            for end in ["\n", "\r", "\r\n"] {
-                let text = format!("{line}{end}{line}é{end}").repeat(3);
-                let expected = [line.clone(), format!("{line}é")];
-                let expected = expected.iter().cycle().take(6).cloned().enumerate();
-                let expected: Vec<_> = expected.map(|(k, line)| (k + 1, line)).collect();
-                assert_eq!(lines(text.as_bytes()), expected);
-            }
-        }
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::io::{self, BufRead, Read};
 use glam::DVec3;
 
 use super::check::{Problem, excerpt, within_limit};
-use super::clean::{Lines, words};
+use super::clean::Lines;
 use super::report::{LoadError, WarningKind, Warnings};
 use super::{MAX_CORNERS, MAX_COUNT};
 
@@ -130,13 +130,13 @@ impl<'a, 'w> Statements<'a, 'w> {
                 self.number = number;
                 self.line.push_str(keyword);
                 if keyword == "f" {
-                    for corner in words(numbers) {
+                    for corner in numbers.split_whitespace() {
                         let vertex = corner.split('/').next().unwrap_or_default();
                         self.line.extend([" ", vertex]);
                     }
-                } else if words(numbers).nth(4).is_some() {
+                } else if numbers.split_whitespace().nth(4).is_some() {
                     self.warnings.add(self.file, number, WarningKind::VertexColors);
-                    for coordinate in words(numbers).take(3) {
+                    for coordinate in numbers.split_whitespace().take(3) {
                         self.line.extend([" ", coordinate]);
                     }
                 } else {
@@ -195,7 +195,7 @@ impl Record {
         let lines = self.normal_indices.len() + 1;
         within_limit(lines, "normals", MAX_COUNT, "split the model")?;
         let numbers: Vec<f64> =
-            words(numbers).take(3).map_while(|word| word.parse().ok()).collect();
+            numbers.split_whitespace().take(3).map_while(|word| word.parse().ok()).collect();
         let normal = if numbers.len() == 3 { unit(DVec3::from_slice(&numbers)) } else { None };
         self.normal_indices.push(normal.map(|_| self.normals.len() as u32));
         self.normals.extend(normal);
@@ -209,13 +209,13 @@ impl Record {
 
     /// Checks and counts the face `corners`: tobj does not name the line of a bad index.
     fn face(&mut self, line: usize, corners: &str) -> Result<Option<FaceDefect>, Problem> {
-        let count = words(corners).count();
+        let count = corners.split_whitespace().count();
         within_limit(count, "corners in one face", MAX_CORNERS, "split the face")?;
         if count < 3 {
             return Ok(Some(FaceDefect::TooFewCorners));
         }
         let first_normal = self.corner_normals.len();
-        for corner in words(corners) {
+        for corner in corners.split_whitespace() {
             let mut parts = corner.split('/');
             let vertex = vertex_index(parts.next().unwrap_or_default(), corner, self.vertices)?;
             if vertex > self.last_vertex.0 {
