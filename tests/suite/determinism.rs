@@ -6,9 +6,10 @@ use glam::DVec3;
 use lancer_accel::{ObvhsBvh2, Wide};
 use lancer_core::Rgb;
 use lancer_core::generate::{icosphere, sphere_flake};
+use lancer_core::geometry::Ray;
 use lancer_core::image::ImageSize;
 use lancer_core::intersector::{Intersector, LinearScan};
-use lancer_core::render::{Cancelled, Control, PrimaryHits, Rendering, render_pixels};
+use lancer_core::render::{AlongRays, Cancelled, Control, Rendering, render_pixels};
 use lancer_core::sampling::{Pattern, PixelSampling, Sample};
 use lancer_core::scene::{Material, MaterialId, PointLight, Scene};
 use lancer_core::world::World;
@@ -62,10 +63,12 @@ fn pictures_do_not_depend_on_who_answers() {
             let [together, alone] = [&wide as &dyn Intersector, &linear].map(|index| {
                 let world = World { scene, index };
                 let whitted = Whitted::new(world, Settings::default());
-                let hits = PrimaryHits::new(world, size, |ray, hit, _, counts: &mut RayCounts| {
-                    whitted.shade(ray, hit, counts)
-                });
-                let together = render_pixels(size, sampling, Control::default(), hits).unwrap();
+                let trace =
+                    |rays: &[Ray], _: &[Sample], radiance: &mut [Rgb], counts: &mut RayCounts| {
+                        whitted.trace_all(rays, radiance, counts);
+                    };
+                let all = AlongRays::new(world, size, trace);
+                let together = render_pixels(size, sampling, Control::default(), all).unwrap();
                 let alone = render_pixels(
                     size,
                     sampling,
@@ -80,6 +83,41 @@ fn pictures_do_not_depend_on_who_answers() {
             assert!(together == alone && together.counts.shadow > 100, "{:?}", together.counts);
         }
     }
+}
+
+/// Bits and counts of rays that are followed together are those of rays followed one by one, whatever ends the
+/// recursion and however many there are.
+#[test]
+fn rays_are_followed_together_as_alone() {
+    let mut scene = scene();
+    let second = PointLight { position: DVec3::new(-4.0, 3.0, 5.0), ..scene.lights[0] };
+    scene.lights.push(second);
+    let wide = Wide::build(&scene);
+    let world = World { scene: &scene, index: &wide };
+    let through = scene.camera.primary_rays(ImageSize::new(24, 16));
+    let pixels = (0..16).flat_map(|y| (0..24).map(move |x| (f64::from(x), f64::from(y))));
+    let rays: Vec<Ray> = pixels.map(|(x, y)| through.through(x + 0.5, y + 0.5)).collect();
+    let mut bounces = Vec::new();
+    for (max_depth, min_weight, at_limit) in [
+        (0, 0.0, AtLimit::Background),
+        (4, 0.3, AtLimit::Ambient),
+        (6, 0.0, AtLimit::Black),
+        (6, 0.3, AtLimit::Roulette { seed: 5 }),
+    ] {
+        let whitted = Whitted::new(world, Settings { max_depth, min_weight, at_limit });
+        let mut wanted = RayCounts::default();
+        let alone: Vec<Rgb> = rays.iter().map(|ray| whitted.trace(ray, &mut wanted)).collect();
+        bounces.push(wanted.mirror + wanted.refracted);
+        for batch in [1, 2, 3, 7, 128, rays.len()] {
+            let (mut together, mut counts) = (vec![Rgb::NAN; rays.len()], RayCounts::default());
+            for (rays, radiance) in rays.chunks(batch).zip(together.chunks_mut(batch)) {
+                whitted.trace_all(rays, radiance, &mut counts);
+            }
+            assert_eq!(counts, wanted, "{max_depth} {at_limit:?} {batch}");
+            assert!(together == alone, "{max_depth} {at_limit:?} {batch}");
+        }
+    }
+    assert!(bounces[0] == 0 && bounces[1] > 100 && bounces[2] > 2 * bounces[1], "{bounces:?}");
 }
 
 #[test]

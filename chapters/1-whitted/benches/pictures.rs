@@ -8,8 +8,8 @@ use lancer_accel::{ObvhsBvh2, Wide};
 use lancer_core::Rgb;
 use lancer_core::geometry::Ray;
 use lancer_core::image::ImageSize;
-use lancer_core::intersector::{Hit, Intersector, LinearScan};
-use lancer_core::render::{Control, PrimaryHits, render_pixels};
+use lancer_core::intersector::{Intersector, LinearScan};
+use lancer_core::render::{AlongRays, Control, render_pixels};
 use lancer_core::sampling::{PixelSampling, Sample};
 use lancer_core::scene::Scene;
 use lancer_core::world::World;
@@ -17,26 +17,25 @@ use lancer_whitted::{Appel, RayCounts, Settings, Whitted};
 
 const SIZE: ImageSize = ImageSize::new(256, 256);
 
-fn picture(
-    world: World,
-    shade: impl Fn(&Ray, Option<Hit>, &mut RayCounts) -> Rgb + Sync,
-) -> RayCounts {
-    let shade = |ray: &Ray, hit, _: &Sample, counts: &mut _| shade(ray, hit, counts);
-    let hits = PrimaryHits::new(world, SIZE, shade);
-    let rendering = render_pixels(SIZE, PixelSampling::CENTER, Control::default(), hits);
+fn picture(world: World, trace: impl Fn(&[Ray], &mut [Rgb], &mut RayCounts) + Sync) -> RayCounts {
+    let trace = |rays: &[Ray], _: &[Sample], radiance: &mut [Rgb], counts: &mut _| {
+        trace(rays, radiance, counts);
+    };
+    let all = AlongRays::new(world, SIZE, trace);
+    let rendering = render_pixels(SIZE, PixelSampling::CENTER, Control::default(), all);
     rendering.expect("nobody cancels a bench").counts
 }
 
 fn appel(scene: &Scene, index: &dyn Intersector) -> RayCounts {
     let world = World { scene, index };
     let method = Appel::new(world);
-    picture(world, |ray, hit, counts| method.shade(ray, hit, counts))
+    picture(world, |rays, radiance, counts| method.trace_all(rays, radiance, counts))
 }
 
 fn whitted(scene: &Scene, index: &dyn Intersector) -> RayCounts {
     let world = World { scene, index };
     let method = Whitted::new(world, Settings::default());
-    picture(world, |ray, hit, counts| method.shade(ray, hit, counts))
+    picture(world, |rays, radiance, counts| method.trace_all(rays, radiance, counts))
 }
 
 fn pictures(criterion: &mut Criterion) {

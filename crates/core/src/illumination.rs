@@ -14,7 +14,7 @@
 use glam::DVec3;
 
 use crate::Rgb;
-use crate::geometry::Ray;
+use crate::geometry::{Ray, Real, Vector};
 use crate::optics::reflect;
 
 /// What a light contributes per unit of its intensity before the surface is looked at.
@@ -28,9 +28,9 @@ use crate::optics::reflect;
 /// Slide « Modèle d'éclairage : expression du modèle ».
 #[doc(alias = "eq:attenuation")]
 #[doc(alias = "atténuation")]
-#[inline]
-pub fn attenuation(visible: bool, distance: f64) -> f64 {
-    if visible { 1.0 / (distance * distance) } else { 0.0 }
+#[inline(always)]
+pub fn attenuation<T: Real>(visible: T::Mask, distance: T) -> T {
+    T::select(visible, (distance * distance).recip(), distance.all(0.0))
 }
 
 /// The term for all directions that the model does not follow.
@@ -51,13 +51,13 @@ pub fn ambient(mean_reflectance: Rgb, ambient: Rgb) -> Rgb {
 
 /// The constants of `eq:local` at one point of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reflectance {
+pub struct Reflectance<V: Vector = Rgb> {
     /// ρ_d.
-    pub diffuse: Rgb,
+    pub diffuse: V,
     /// ρ_s.
-    pub specular: Rgb,
+    pub specular: V,
     /// n, the exponent of the highlight.
-    pub shininess: f64,
+    pub shininess: V::Scalar,
 }
 
 /// What a surface sends to the eye of the light that arrives from one direction, per unit of it: the bracket of
@@ -84,44 +84,44 @@ pub struct Reflectance {
 /// Slide « Modèle Local ». (The slide's sum runs from 0 to nbLum, one light too many.)
 #[doc(alias = "eq:local")]
 #[doc(alias = "modèle local")]
-#[inline]
-pub fn local(reflectance: &Reflectance, n: DVec3, to_light: DVec3, to_eye: DVec3) -> Rgb {
-    let cos_light = n.dot(to_light);
-    if cos_light <= 0.0 {
-        return Rgb::ZERO;
-    }
-    let mut reflected = reflectance.diffuse * cos_light;
-    if reflectance.specular != Rgb::ZERO {
-        let cos_mirror = reflect(-to_light, n).dot(to_eye);
-        if cos_mirror > 0.0 {
-            reflected += reflectance.specular * cos_mirror.powf(reflectance.shininess);
-        }
-    }
-    reflected
+#[inline(always)]
+pub fn local<V: Vector>(reflectance: &Reflectance<V>, n: V, to_light: V, to_eye: V) -> V {
+    let (cos_light, cos_mirror) = (n.dot(to_light), reflect(-to_light, n).dot(to_eye));
+    let zero = cos_light.all(0.0);
+    let is_lit = zero.below(cos_light);
+    let is_highlit = is_lit & zero.below(cos_mirror) & !reflectance.specular.is_zero();
+    let highlight = reflectance.specular * cos_mirror.power(reflectance.shininess, is_highlit);
+    V::select(is_lit, reflectance.diffuse * cos_light + highlight, n.all(Rgb::ZERO))
 }
 
 /// Light that arrives at a surface unless something is in its way.
 #[derive(Clone, Copy, Debug)]
-pub struct Arriving<I> {
+pub struct Arriving<I, V = DVec3> {
     /// From the surface to the light, which it reaches at t = 1.
-    pub shadow_ray: Ray,
+    pub shadow_ray: Ray<V>,
     /// Iᵢ for L, the unit direction of that ray: of a point source, or of a sample of a lamp over its density.
     pub intensity: I,
 }
 
-impl<I: Fn(DVec3) -> Rgb> Arriving<I> {
+impl<V: Vector, I: Fn(V) -> V> Arriving<I, V> {
+    /// By a shadow ray, with an intensity.
+    #[inline(always)]
+    pub fn new(shadow_ray: Ray<V>, intensity: I) -> Self {
+        Self { shadow_ray, intensity }
+    }
+
     /// What the surface sends to the eye of it with vis = 1: one term of `eq:local`, 0 for a light behind the
     /// surface.
-    #[inline]
-    pub fn unshadowed(&self, reflectance: &Reflectance, n: DVec3, to_eye: DVec3) -> Rgb {
+    #[inline(always)]
+    pub fn unshadowed(&self, reflectance: &Reflectance<V>, n: V, to_eye: V) -> V {
         let direction = self.shadow_ray.direction;
-        if n.dot(direction) <= 0.0 {
-            return Rgb::ZERO;
-        }
-        let distance = direction.length();
+        let cos_light = n.dot(direction);
+        let is_before = cos_light.all(0.0).below(cos_light);
+        let distance = direction.dot(direction).sqrt();
         let to_light = direction * distance.recip();
-        let g = attenuation(true, distance);
-        (self.intensity)(to_light) * g * local(reflectance, n, to_light, to_eye)
+        let g = attenuation(is_before, distance);
+        let arriving = (self.intensity)(to_light) * g * local(reflectance, n, to_light, to_eye);
+        V::select(is_before, arriving, n.all(Rgb::ZERO))
     }
 }
 

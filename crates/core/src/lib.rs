@@ -14,6 +14,7 @@ pub mod geometry;
 pub mod illumination;
 pub mod image;
 pub mod intersector;
+pub mod lanes;
 pub mod method;
 pub mod metric;
 pub mod optics;

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::Rgb;
+use crate::geometry::{Real, Vector};
 use crate::scene::Material;
 use crate::world::SurfacePoint;
 
@@ -10,8 +11,10 @@ use crate::world::SurfacePoint;
 /// within it.
 const UNIT: f64 = 1e-9;
 
-fn is_unit(v: DVec3) -> bool {
-    (v.length_squared() - 1.0).abs() <= UNIT
+fn is_unit<V: Vector>(v: V) -> bool {
+    let square = v.dot(v);
+    let off = (square - square.all(1.0)).abs();
+    V::Scalar::bits(!off.at_most(off.all(UNIT))) == 0
 }
 
 /// Direction of the mirror ray.
@@ -30,10 +33,11 @@ fn is_unit(v: DVec3) -> bool {
 #[doc(alias = "eq:reflected-ray")]
 #[doc(alias = "reflected-ray")]
 #[doc(alias = "rayon réfléchi")]
-#[inline]
-pub fn reflect(incident: DVec3, n: DVec3) -> DVec3 {
+#[inline(always)]
+pub fn reflect<V: Vector>(incident: V, n: V) -> V {
     debug_assert!(is_unit(incident) && is_unit(n));
-    incident - 2.0 * n.dot(incident) * n
+    let two = n.dot(incident).all(2.0);
+    incident - n * (two * n.dot(incident))
 }
 
 /// Direction of the refracted ray; `None` is total reflection.
@@ -58,26 +62,58 @@ pub fn reflect(incident: DVec3, n: DVec3) -> DVec3 {
 #[doc(alias = "snell")]
 #[inline]
 pub fn refract(incident: DVec3, n: DVec3, n1: f64, n2: f64) -> Option<DVec3> {
-    debug_assert!(is_unit(incident) && is_unit(n) && n.dot(incident) <= 0.0);
+    let (direction, is_refracted) = refract_all(incident, n, n1, n2);
+    is_refracted.then_some(direction)
+}
+
+/// [`refract`] for several rays side by side: the directions, and where there is one.
+#[inline(always)]
+pub fn refract_all<V: Vector>(
+    incident: V,
+    n: V,
+    n1: V::Scalar,
+    n2: V::Scalar,
+) -> (V, <V::Scalar as Real>::Mask) {
+    debug_assert!(is_unit(incident) && is_unit(n));
+    let one = n1.all(1.0);
     let eta = n1 / n2;
     let cos1 = -n.dot(incident);
     // 1 − cos² as a product: it keeps the digits that the difference of squares loses at normal
     // incidence, where cos θ₁ is near 1.
-    let sin1_squared = (1.0 - cos1) * (1.0 + cos1);
-    let cos2_squared = 1.0 - eta * eta * sin1_squared;
-    (cos2_squared >= 0.0).then(|| eta * incident + (eta * cos1 - cos2_squared.sqrt()) * n)
+    let sin1_squared = (one - cos1) * (one + cos1);
+    let cos2_squared = one - eta * eta * sin1_squared;
+    let direction = incident * eta + n * (eta * cos1 - cos2_squared.sqrt());
+    (direction, n1.all(0.0).at_most(cos2_squared))
 }
 
 /// n₁ and n₂ of `eq:descartes`, before and behind a surface that a ray meets along `incident`: the outside, where
 /// the geometric normal points, has the index 1. Only their quotient counts, so that a material's index is that of the
 /// inside over that of the outside: no stack of the media around a ray is kept.
-#[inline]
-pub fn indices(surface: &SurfacePoint, material: &Material, incident: DVec3) -> [f64; 2] {
-    if surface.geometric_normal.dot(incident) < 0.0 {
-        [1.0, material.refractive_index]
-    } else {
-        [material.refractive_index, 1.0]
-    }
+#[inline(always)]
+pub fn indices<V: Vector, M>(
+    surface: &SurfacePoint<V, M>,
+    refractive_index: V::Scalar,
+    incident: V,
+) -> [V::Scalar; 2] {
+    let cos = surface.geometric_normal.dot(incident);
+    let (one, from_outside) = (cos.all(1.0), cos.below(cos.all(0.0)));
+    [
+        V::Scalar::select(from_outside, one, refractive_index),
+        V::Scalar::select(from_outside, refractive_index, one),
+    ]
+}
+
+/// The directions of the mirror ray and of the refracted ray at surfaces side by side, and where the reflection is not
+/// total.
+#[inline(always)]
+pub fn directions<V: Vector, M>(
+    surface: &SurfacePoint<V, M>,
+    refractive_index: V::Scalar,
+    incident: V,
+) -> (V, (V, <V::Scalar as Real>::Mask)) {
+    let n = surface.optical_normal(incident);
+    let [n1, n2] = indices(surface, refractive_index, incident);
+    (reflect(incident, n), refract_all(incident, n, n1, n2))
 }
 
 /// The two directions that `eq:recursion` follows from a surface, each with its share.
@@ -99,18 +135,23 @@ impl Branches {
     /// At total reflection what does not pass goes the way of the mirror: there is no other.
     #[inline]
     pub fn new(surface: &SurfacePoint, material: &Material, incident: DVec3) -> Self {
+        let (mirror, (refracted, is_refracted)) =
+            directions(surface, material.refractive_index, incident);
+        Self::along(material, mirror, is_refracted.then_some(refracted))
+    }
+
+    /// The same if the directions are known: that of the mirror ray, and that of the refracted ray unless the
+    /// reflection is total.
+    #[inline]
+    pub fn along(material: &Material, mirror: DVec3, refracted: Option<DVec3>) -> Self {
         let (mut k_s, k_t) = (material.k_s, material.k_t);
-        let n = surface.optical_normal(incident);
-        let mut refracted = None;
-        if k_t != Rgb::ZERO {
-            let [n1, n2] = indices(surface, material, incident);
-            match refract(incident, n, n1, n2) {
-                Some(direction) => refracted = Some((k_t, direction)),
-                None => k_s += k_t,
-            }
+        let total_reflection = k_t != Rgb::ZERO && refracted.is_none();
+        if total_reflection {
+            k_s += k_t;
         }
-        let mirror = (k_s != Rgb::ZERO).then(|| (k_s, reflect(incident, n)));
-        Self { mirror, refracted, total_reflection: k_t != Rgb::ZERO && refracted.is_none() }
+        let of = |k: Rgb, direction| (k != Rgb::ZERO).then_some((k, direction));
+        let refracted = refracted.and_then(|direction| of(k_t, direction));
+        Self { mirror: of(k_s, mirror), refracted, total_reflection }
     }
 
     /// k_s and k_t of `eq:recursion`, once it is known whether the reflection is total.

@@ -1,18 +1,17 @@
 //! The loop over the picture. Tiles go to threads in any order; each pixel is computed by one of them
 //! alone, from its coordinates, so the picture has the same bits for any number of threads.
 
+mod estimator;
+
 use std::ops::AddAssign;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
 use crate::Rgb;
-use crate::geometry::{Interval, Ray};
 use crate::image::{Image, ImageSize};
-use crate::intersector::Hit;
 use crate::sampling::{PixelSampling, Sample};
-use crate::scene::PrimaryRays;
-use crate::world::World;
+pub use estimator::{AlongRays, Estimator, PrimaryHits};
 
 /// How a rendering is run; none of it changes the picture.
 #[derive(Clone, Copy)]
@@ -276,69 +275,36 @@ const BATCH: usize = 128;
 /// are a square of 8 × 8, or close to each other.
 pub fn neighbours_together(size: ImageSize) -> impl Iterator<Item = (u32, u32)> {
     let side = u64::from(size.width.max(size.height).next_power_of_two());
-    let places = (0..side * side).map(|code| (every_second_bit(code), every_second_bit(code >> 1)));
-    places.filter(move |&(x, y)| x < size.width && y < size.height)
+    (0..side * side).map(place).filter(move |&(x, y)| x < size.width && y < size.height)
 }
 
-/// Bits 0, 2, 4, … of a number, moved together.
-fn every_second_bit(code: u64) -> u32 {
-    let mut bits = code & 0x5555_5555_5555_5555;
-    for (shift, mask) in [
-        (1, 0x3333_3333_3333_3333),
-        (2, 0x0f0f_0f0f_0f0f_0f0f),
-        (4, 0x00ff_00ff_00ff_00ff),
-        (8, 0x0000_ffff_0000_ffff),
-        (16, 0xffff_ffff),
-    ] {
-        bits = (bits | bits >> shift) & mask;
-    }
-    bits as u32
-}
-
-/// Estimates the radiance that arrives at samples. A function of a sample and the counts is an estimator, and
-/// so is [`PrimaryHits`].
-pub trait Estimator<C>: Sync {
-    /// The radiance at each sample, into the slice of the same length.
-    fn radiance(&self, samples: &[Sample], radiance: &mut [Rgb], counts: &mut C);
-}
-
-impl<C, F: Fn(&Sample, &mut C) -> Rgb + Sync> Estimator<C> for F {
-    fn radiance(&self, samples: &[Sample], radiance: &mut [Rgb], counts: &mut C) {
-        for (sample, radiance) in samples.iter().zip(radiance) {
-            *radiance = self(sample, counts);
+/// Column and row of a place on Morton's curve: bits 0, 2, 4, … of its number, and bits 1, 3, 5, ….
+#[inline]
+fn place(code: u64) -> (u32, u32) {
+    /// Those of eight bits.
+    const PLACES: [(u8, u8); 256] = {
+        let mut places = [(0, 0); 256];
+        let mut code = 0;
+        while code < 256 {
+            let mut bit = 0;
+            while bit < 4 {
+                places[code].0 |= ((code >> (2 * bit) & 1) << bit) as u8;
+                places[code].1 |= ((code >> (2 * bit + 1) & 1) << bit) as u8;
+                bit += 1;
+            }
+            code += 1;
         }
-    }
-}
-
-/// What the scene's camera sees first at each sample: the primary rays of a batch are answered together, which
-/// is faster with some indexes, and `shade` tells what comes back along each.
-pub struct PrimaryHits<'a, F> {
-    world: World<'a>,
-    rays: PrimaryRays,
-    shade: F,
-}
-
-impl<'a, F> PrimaryHits<'a, F> {
-    /// For pictures of one size.
-    pub fn new<C>(world: World<'a>, size: ImageSize, shade: F) -> Self
-    where
-        F: Fn(&Ray, Option<Hit>, &Sample, &mut C) -> Rgb,
-    {
-        Self { world, rays: world.scene.camera.primary_rays(size), shade }
-    }
-}
-
-impl<C, F> Estimator<C> for PrimaryHits<'_, F>
-where
-    F: Fn(&Ray, Option<Hit>, &Sample, &mut C) -> Rgb + Sync,
-{
-    fn radiance(&self, samples: &[Sample], radiance: &mut [Rgb], counts: &mut C) {
-        let through = |sample: &Sample| self.rays.through(sample.film.x, sample.film.y);
-        let rays: Vec<Ray> = samples.iter().map(through).collect();
-        let mut hits = vec![None; rays.len()];
-        self.world.index.closest_hits(&rays, Interval::POSITIVE, &mut hits);
-        for (((ray, hit), sample), radiance) in rays.iter().zip(hits).zip(samples).zip(radiance) {
-            *radiance = (self.shade)(ray, hit, sample, counts);
+        places
+    };
+    let (mut x, mut y) = (0, 0);
+    let (mut rest, mut shift) = (code, 0);
+    loop {
+        let (column, row) = PLACES[(rest & 0xff) as usize];
+        x |= u32::from(column) << shift;
+        y |= u32::from(row) << shift;
+        (rest, shift) = (rest >> 8, shift + 4);
+        if rest == 0 {
+            return (x, y);
         }
     }
 }
@@ -346,11 +312,8 @@ where
 /// The nearest `f32`. A radiance beyond its range, next to a lamp, becomes the largest number there is;
 /// what is not finite stays so, to be counted.
 fn narrow(channel: f64) -> f32 {
-    if channel.is_finite() {
-        channel.clamp(f32::MIN.into(), f32::MAX.into()) as f32
-    } else {
-        channel as f32
-    }
+    let nearest = channel as f32;
+    if nearest.is_infinite() && channel.is_finite() { f32::MAX.copysign(nearest) } else { nearest }
 }
 
 /// Renders pixel by pixel: a pixel is the mean of its samples, summed in `f64` in their order.

@@ -101,6 +101,9 @@ impl PixelSampling {
         };
         numbers.map(move |index| {
             let in_cell = |place: DVec2| {
+                if cells == [1, 1] {
+                    return place;
+                }
                 let cell = DVec2::new(f64::from(index % cells[0]), f64::from(index / cells[0]));
                 (cell + place) / DVec2::new(f64::from(cells[0]), f64::from(cells[1]))
             };

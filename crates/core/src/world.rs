@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::Rgb;
-use crate::geometry::{Ray, gamma, leave_surface};
+use crate::geometry::{Ray, Real, Vector, gamma, leave_surface};
 use crate::illumination::Reflectance;
 use crate::intersector::{Hit, Intersector};
 use crate::optics::reflect;
@@ -27,20 +27,20 @@ pub struct World<'a> {
 
 /// A point of a surface, worked out once for the closest hit.
 #[derive(Clone, Copy, Debug)]
-pub struct SurfacePoint {
+pub struct SurfacePoint<V = DVec3, M = MaterialId> {
     /// The point, on the surface up to `error`.
-    pub position: DVec3,
+    pub position: V,
     /// Bound of the position's distance from the true surface, per coordinate.
-    pub error: DVec3,
+    pub error: V,
     /// Unit normal of the shape itself, pointing outwards.
-    pub geometric_normal: DVec3,
+    pub geometric_normal: V,
     /// Unit normal for shading, on the same side: interpolated over smooth triangles.
-    pub shading_normal: DVec3,
+    pub shading_normal: V,
     /// Where shadow rays start on the outside: `position`, lifted onto the surface that the vertex normals suggest,
     /// so that the facets of a smooth mesh do not shade each other at the terminator.
-    pub lifted: DVec3,
+    pub lifted: V,
     /// What the surface is made of.
-    pub material: MaterialId,
+    pub material: M,
 }
 
 impl Scene {
@@ -140,47 +140,44 @@ fn smooth(
     }
 }
 
-impl SurfacePoint {
+impl<V: Vector, M> SurfacePoint<V, M> {
     /// The unit shading normal on the side of the surface that `to_eye` points to.
-    #[inline]
-    pub fn shading_normal_towards(&self, to_eye: DVec3) -> DVec3 {
-        if self.geometric_normal.dot(to_eye) < 0.0 {
-            -self.shading_normal
-        } else {
-            self.shading_normal
-        }
-    }
-
-    /// The unit normal that mirrors and refracts a ray arriving along `incident`, on the side it comes
-    /// from: the shading normal, unless its mirror ray would pass through the surface.
-    #[inline]
-    pub fn optical_normal(&self, incident: DVec3) -> DVec3 {
-        let side = if self.geometric_normal.dot(incident) > 0.0 { -1.0 } else { 1.0 };
-        let (geometric, shading) = (side * self.geometric_normal, side * self.shading_normal);
-        let turns_back =
-            |n: DVec3| n.dot(incident) < 0.0 && reflect(incident, n).dot(geometric) > 0.0;
-        if self.shading_normal == self.geometric_normal || !turns_back(shading) {
-            geometric
-        } else {
-            shading
-        }
+    #[inline(always)]
+    pub fn shading_normal_towards(&self, to_eye: V) -> V {
+        let cos = self.geometric_normal.dot(to_eye);
+        V::select(cos.below(cos.all(0.0)), -self.shading_normal, self.shading_normal)
     }
 
     /// The ray that leaves the surface in `direction`, to either side.
-    #[inline]
-    pub fn spawn(&self, direction: DVec3) -> Ray {
+    #[inline(always)]
+    pub fn spawn(&self, direction: V) -> Ray<V> {
         let origin = leave_surface(self.position, self.error, self.geometric_normal, direction);
         Ray::new(origin, direction)
     }
 
     /// The ray from the surface to `target`, which it reaches at t = 1.
-    #[inline]
-    pub fn spawn_to(&self, target: DVec3) -> Ray {
+    #[inline(always)]
+    pub fn spawn_to(&self, target: V) -> Ray<V> {
         // Seen from inside a smooth surface is hollow: its facets stand before it, not behind. Near the
         // terminator the shading normal tells the side, since the facet has turned away already.
-        let outwards = (target - self.position).dot(self.shading_normal) > 0.0;
-        let start = if outwards { self.lifted } else { self.position };
+        let cos = (target - self.position).dot(self.shading_normal);
+        let outwards = cos.all(0.0).below(cos);
+        let start = V::select(outwards, self.lifted, self.position);
         let origin = leave_surface(start, self.error, self.geometric_normal, target - start);
         Ray::new(origin, target - origin)
+    }
+
+    /// The unit normal that mirrors and refracts a ray arriving along `incident`, on the side it comes
+    /// from: the shading normal, unless its mirror ray would pass through the surface.
+    #[inline(always)]
+    pub fn optical_normal(&self, incident: V) -> V {
+        let cos = self.geometric_normal.dot(incident);
+        let zero = cos.all(0.0);
+        let is_behind = zero.below(cos);
+        let geometric = V::select(is_behind, -self.geometric_normal, self.geometric_normal);
+        let shading = V::select(is_behind, -self.shading_normal, self.shading_normal);
+        let turns_back = shading.dot(incident).below(zero)
+            & zero.below(reflect(incident, shading).dot(geometric));
+        V::select(turns_back, shading, geometric)
     }
 }

@@ -1,53 +1,12 @@
-use glam::DVec3;
 use lancer_core::Rgb;
 use lancer_core::geometry::{Interval, Ray};
-use lancer_core::illumination::{ambient, lit};
 use lancer_core::intersector::Hit;
-use lancer_core::scene::PointSource;
-use lancer_core::world::{SurfacePoint, World};
+use lancer_core::lanes::FourLanes;
+use lancer_core::with_lanes;
+use lancer_core::world::World;
 
+use crate::lighting::{Lighting, Lit};
 use crate::recorder::{Call, Recorder};
-
-/// A world and its lights as points: what both methods of the chapter need at a surface.
-#[derive(Clone)]
-pub struct Lighting<'a> {
-    /// The scene and its index.
-    pub world: World<'a>,
-    sources: Vec<PointSource>,
-}
-
-impl<'a> Lighting<'a> {
-    /// Collects the lights. An area light counts as a point at its centroid, see
-    /// [`Scene::point_sources`](lancer_core::scene::Scene::point_sources).
-    pub fn new(world: World<'a>) -> Self {
-        Self { world, sources: world.scene.point_sources() }
-    }
-
-    /// What a surface sends to the eye without the help of other surfaces: [`lit`] by the point sources, each of
-    /// which a shadow ray may or may not reach.
-    ///
-    /// `n` is the unit shading normal on the eye's side; `to_eye` is unit and points away from the surface.
-    #[inline]
-    pub fn surface<R: Recorder>(
-        &self,
-        surface: &SurfacePoint,
-        n: DVec3,
-        to_eye: DVec3,
-        recorder: &mut R,
-    ) -> Rgb {
-        let World { scene, index } = self.world;
-        let reflectance = scene.reflectance(surface);
-        let unlit = ambient(reflectance.diffuse, scene.ambient) + scene.emitted(surface, to_eye);
-        let arriving = self.sources.iter().map(|source| source.arriving(surface));
-        let radiance = lit(unlit, &reflectance, n, to_eye, arriving, |shadow_ray| {
-            let visible = !index.occluded(shadow_ray, Interval::up_to(1.0));
-            recorder.shadow(shadow_ray, visible);
-            visible
-        });
-        recorder.local(radiance);
-        radiance
-    }
-}
 
 /// The method of Appel (1968): what the eye sees and which lights see it too.
 ///
@@ -69,27 +28,43 @@ impl<'a> Appel<'a> {
     }
 
     /// The radiance that comes back along a primary ray of unit direction.
-    #[inline]
     pub fn trace<R: Recorder>(&self, ray: &Ray, recorder: &mut R) -> Rgb {
-        let hit = self.lighting.world.index.closest_hit(ray, Interval::POSITIVE);
-        self.shade(ray, hit, recorder)
+        let mut radiance = [Rgb::ZERO];
+        self.trace_all(&[*ray], &mut radiance, recorder);
+        radiance[0]
     }
 
-    /// The same if what the ray hits first is known.
-    #[inline]
-    pub fn shade<R: Recorder>(&self, ray: &Ray, hit: Option<Hit>, recorder: &mut R) -> Rgb {
-        let scene = self.lighting.world.scene;
-        recorder.enter(&Call::primary(ray));
-        let radiance = match hit {
-            None => scene.background,
-            Some(hit) => {
-                let surface = scene.surface_at(ray, &hit);
-                recorder.hit(&hit, &surface);
-                let n = surface.shading_normal_towards(-ray.direction);
-                self.lighting.surface(&surface, n, -ray.direction, recorder)
-            }
-        };
-        recorder.leave(radiance);
-        radiance
+    /// The same for many rays, each radiance in its ray's place: all of them are asked together, and all their shadow
+    /// rays.
+    ///
+    /// # Panics
+    /// If the slices are not of one length.
+    pub fn trace_all<R: Recorder>(&self, rays: &[Ray], radiance: &mut [Rgb], recorder: &mut R) {
+        assert_eq!(rays.len(), radiance.len(), "one answer for each ray");
+        let World { scene, index } = self.lighting.world;
+        rays.iter().for_each(|ray| recorder.enter(&Call::primary(ray)));
+        let mut hits = vec![None; rays.len()];
+        index.closest_hits(rays, Interval::POSITIVE, &mut hits);
+        let mut lit = Lit::with_capacity(rays.len());
+        let met = (rays, &*hits);
+        with_lanes!(self.lighting.kernel(), self.surfaces(met, &mut lit, &mut *recorder));
+        self.lighting.answer(&mut lit, recorder);
+        radiance.fill(scene.background);
+        for (&k, &local) in lit.of.iter().zip(&lit.local) {
+            recorder.local(local);
+            radiance[k] = local;
+        }
+        radiance.iter().for_each(|&radiance| recorder.leave(radiance));
+    }
+
+    #[inline(always)]
+    fn surfaces<L: FourLanes, R: Recorder>(
+        &self,
+        lanes: L,
+        met: (&[Ray], &[Option<Hit>]),
+        lit: &mut Lit,
+        recorder: &mut R,
+    ) {
+        self.lighting.surfaces(lanes, met, lit, recorder, |_, _| ());
     }
 }

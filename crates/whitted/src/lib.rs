@@ -12,12 +12,14 @@
 //! [`lancer_core::optics`].
 
 mod appel;
+mod lighting;
 mod methods;
 mod ray_tree;
 mod recorder;
 mod trace;
 
-pub use appel::{Appel, Lighting};
+pub use appel::Appel;
+pub use lighting::Lighting;
 pub use methods::METHODS;
 pub use ray_tree::{RayEnd, RayNode, RayTree, ShadowRay};
 pub use recorder::{Call, RayCounts, RayKind, Recorder};

@@ -1,5 +1,5 @@
 use lancer_core::method::{Effect, Method, SAMPLES, Setting, Work, WorkKind};
-use lancer_core::render::PrimaryHits;
+use lancer_core::render::AlongRays;
 use lancer_core::world::World;
 
 use crate::{Appel, RayCounts, Settings, Whitted};
@@ -16,10 +16,10 @@ pub static METHODS: [Method; 2] = [
             let index = (order.index)(order.scene.into());
             let world = World { scene: order.scene, index: &*index };
             let appel = Appel::new(world);
-            order.sample(PrimaryHits::new(
+            order.sample(AlongRays::new(
                 world,
                 order.size,
-                |ray, hit, _, counts: &mut RayCounts| appel.shade(ray, hit, counts),
+                |rays, _, radiance, counts: &mut RayCounts| appel.trace_all(rays, radiance, counts),
             ))
         },
     },
@@ -33,10 +33,12 @@ pub static METHODS: [Method; 2] = [
             let index = (order.index)(order.scene.into());
             let world = World { scene: order.scene, index: &*index };
             let whitted = Whitted::new(world, Settings::to_depth(order.max_depth));
-            order.sample(PrimaryHits::new(
+            order.sample(AlongRays::new(
                 world,
                 order.size,
-                |ray, hit, _, counts: &mut RayCounts| whitted.shade(ray, hit, counts),
+                |rays, _, radiance, counts: &mut RayCounts| {
+                    whitted.trace_all(rays, radiance, counts);
+                },
             ))
         },
     },

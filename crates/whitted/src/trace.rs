@@ -1,12 +1,13 @@
-use glam::DVec3;
 use lancer_core::Rgb;
-use lancer_core::geometry::{Interval, Ray};
+use lancer_core::geometry::{Interval, Ray, Real};
 use lancer_core::intersector::Hit;
-use lancer_core::optics::Branches;
+use lancer_core::lanes::FourLanes;
+use lancer_core::optics::{Branches, directions};
 use lancer_core::sampling::Uniform;
-use lancer_core::world::{SurfacePoint, World};
+use lancer_core::with_lanes;
+use lancer_core::world::World;
 
-use crate::appel::Lighting;
+use crate::lighting::{Lighting, Lit};
 use crate::recorder::{Call, RayKind, Recorder};
 
 /// When the recursion ends, and with which colour.
@@ -107,103 +108,156 @@ impl<'a> Whitted<'a> {
     /// Slide « Algorithme ».
     #[doc(alias = "algo:lr")]
     #[doc(alias = "LR")]
-    #[inline]
     pub fn trace<R: Recorder>(&self, ray: &Ray, recorder: &mut R) -> Rgb {
-        self.lr(Call::primary(ray), recorder)
+        let mut radiance = [Rgb::ZERO];
+        self.lr(&[Call::primary(ray)], &mut radiance, recorder);
+        radiance[0]
     }
 
-    /// The same if what the ray hits first is known.
-    #[inline]
-    pub fn shade<R: Recorder>(&self, ray: &Ray, hit: Option<Hit>, recorder: &mut R) -> Rgb {
-        self.lr_with(Call::primary(ray), recorder, |_| hit)
+    /// The same for many rays, each radiance in its ray's place: their calls of LR go side by side, so that all their
+    /// rays of one depth and kind are asked together. The bits are those of one ray after the other; a recorder is
+    /// told of one call of each before the next.
+    ///
+    /// # Panics
+    /// If the slices are not of one length.
+    pub fn trace_all<R: Recorder>(&self, rays: &[Ray], radiance: &mut [Rgb], recorder: &mut R) {
+        let calls: Vec<Call> = rays.iter().map(Call::primary).collect();
+        self.lr(&calls, radiance, recorder);
     }
 
-    fn lr<R: Recorder>(&self, call: Call, recorder: &mut R) -> Rgb {
-        let index = self.lighting.world.index;
-        self.lr_with(call, recorder, |ray| index.closest_hit(ray, Interval::POSITIVE))
-    }
-
-    /// LR, where `first_hit` tells what a ray hits first.
-    #[inline]
-    fn lr_with<R: Recorder>(
-        &self,
-        call: Call,
-        recorder: &mut R,
-        first_hit: impl Fn(&Ray) -> Option<Hit>,
-    ) -> Rgb {
-        let radiance =
-            if call.depth > self.settings.max_depth || call.weight < self.settings.min_weight {
-                self.at_limit(call, recorder, first_hit)
-            } else {
-                self.follow(&call, recorder, first_hit)
-            };
-        recorder.leave(radiance);
-        radiance
-    }
-
-    #[inline]
-    fn follow<R: Recorder>(
-        &self,
-        call: &Call,
-        recorder: &mut R,
-        first_hit: impl Fn(&Ray) -> Option<Hit>,
-    ) -> Rgb {
-        let scene = self.lighting.world.scene;
-        recorder.enter(call);
-        match first_hit(&call.ray) {
-            Some(hit) => {
-                let surface = scene.surface_at(&call.ray, &hit);
-                recorder.hit(&hit, &surface);
-                self.at_surface(call, &surface, recorder)
+    /// LR of calls side by side.
+    fn lr<R: Recorder>(&self, calls: &[Call], radiance: &mut [Rgb], recorder: &mut R) {
+        assert_eq!(calls.len(), radiance.len(), "one answer for each call");
+        let World { scene, index } = self.lighting.world;
+        let mut rays = Vec::with_capacity(calls.len());
+        let mut followed = Vec::with_capacity(calls.len());
+        for (k, call) in calls.iter().enumerate() {
+            match self.followed(call) {
+                Some((call, divisor)) => {
+                    recorder.enter(&call);
+                    rays.push(call.ray);
+                    followed.push(Followed { k, weight: call.weight, divisor });
+                    radiance[k] = scene.background / divisor;
+                }
+                None => {
+                    recorder.cut(call);
+                    radiance[k] = self.at_limit();
+                }
             }
-            None => scene.background,
         }
+        let mut hits = vec![None; rays.len()];
+        index.closest_hits(&rays, Interval::POSITIVE, &mut hits);
+
+        let (mut lit, mut onwards) = (Lit::with_capacity(rays.len()), Onwards::new(rays.len()));
+        let of = (calls, &*followed);
+        let to = (&mut lit, &mut onwards, &mut *recorder);
+        with_lanes!(self.lighting.kernel(), self.surfaces((&*rays, &*hits), of, to));
+        self.lighting.answer(&mut lit, recorder);
+        lit.local.iter().for_each(|&local| recorder.local(local));
+
+        let Onwards { shares, refracted, mirror } = onwards;
+        let [refracted, reflected] =
+            [refracted, mirror].map(|next| self.returned(&next, shares.len(), recorder));
+        for (surface, &ray) in lit.of.iter().enumerate() {
+            let [k_s, k_t] = shares[surface];
+            let sum =
+                recursion(lit.local[surface], k_s, reflected[surface], k_t, refracted[surface]);
+            radiance[followed[ray].k] = sum / followed[ray].divisor;
+        }
+        radiance.iter().for_each(|&radiance| recorder.leave(radiance));
     }
 
-    #[inline]
-    fn at_surface<R: Recorder>(
-        &self,
-        call: &Call,
-        surface: &SurfacePoint,
-        recorder: &mut R,
-    ) -> Rgb {
-        let incident = call.ray.direction;
-        let material = self.lighting.world.scene.material(surface.material);
-        let n = surface.shading_normal_towards(-incident);
-        let local = self.lighting.surface(surface, n, -incident, recorder);
-
-        let branches = Branches::new(surface, material, incident);
-        let [k_s, k_t] = branches.shares();
-        let mut follow = |branch: Option<(Rgb, DVec3)>, kind| match branch {
-            Some((k, direction)) => self.lr(call.next(surface, direction, k, kind), recorder),
-            None => Rgb::ZERO,
-        };
-        let refracted = follow(branches.refracted, RayKind::Refracted);
-        let reflected = follow(branches.mirror, RayKind::Mirror);
-        recursion(local, k_s, reflected, k_t, refracted)
+    /// What calls from surfaces return, 0 for a surface without one.
+    fn returned<R: Recorder>(&self, next: &Next, surfaces: usize, recorder: &mut R) -> Vec<Rgb> {
+        let mut returned = vec![Rgb::ZERO; surfaces];
+        if !next.calls.is_empty() {
+            let mut radiance = vec![Rgb::ZERO; next.calls.len()];
+            self.lr(&next.calls, &mut radiance, recorder);
+            for (&surface, radiance) in next.from.iter().zip(radiance) {
+                returned[surface] = radiance;
+            }
+        }
+        returned
     }
 
-    fn at_limit<R: Recorder>(
+    /// Lights the surfaces, and collects what follows from them.
+    #[inline(always)]
+    fn surfaces<L: FourLanes, R: Recorder>(
         &self,
-        call: Call,
-        recorder: &mut R,
-        first_hit: impl Fn(&Ray) -> Option<Hit>,
-    ) -> Rgb {
+        lanes: L,
+        met: (&[Ray], &[Option<Hit>]),
+        (calls, followed): (&[Call], &[Followed]),
+        (lit, onwards, recorder): (&mut Lit, &mut Onwards, &mut R),
+    ) {
+        self.lighting.surfaces(
+            lanes,
+            met,
+            lit,
+            recorder,
+            #[inline(always)]
+            |lit, four| {
+                let scene = self.lighting.world.scene;
+                let first = lit.local.len() - lit.last.len();
+                let [a, b, c, d] = lit.four();
+                let materials =
+                    [a.material(scene), b.material(scene), c.material(scene), d.material(scene)];
+                if !materials.iter().any(|m| m.k_s != Rgb::ZERO || m.k_t != Rgb::ZERO) {
+                    onwards.shares.resize(lit.local.len(), [Rgb::ZERO; 2]);
+                    return;
+                }
+                let [a, b, c, d] = materials;
+                let refractive_index = lanes.four([
+                    a.refractive_index,
+                    b.refractive_index,
+                    c.refractive_index,
+                    d.refractive_index,
+                ]);
+                let (mirror, (refracted, is_refracted)) =
+                    directions(&four.surface, refractive_index, four.incident);
+                let mirror = lanes.rays(four.surface.spawn(mirror));
+                let refracted = lanes.rays(four.surface.spawn(refracted));
+                let is_refracted = L::D::bits(is_refracted);
+                for lane in 0..lit.last.len() {
+                    let direction =
+                        (is_refracted >> lane & 1 != 0).then_some(refracted[lane].direction);
+                    let branches =
+                        Branches::along(materials[lane], mirror[lane].direction, direction);
+                    onwards.shares.push(branches.shares());
+                    let surface = first + lane;
+                    let Followed { k, weight, .. } = followed[lit.of[surface]];
+                    let depth = calls[k].depth + 1;
+                    if let Some((k_t, _)) = branches.refracted {
+                        onwards.refracted.push(surface, refracted[lane], depth, weight, k_t);
+                    }
+                    if let Some((k_s, _)) = branches.mirror {
+                        onwards.mirror.push(surface, mirror[lane], depth, weight, k_s);
+                    }
+                }
+            },
+        );
+    }
+
+    /// The call as it is followed, and what its answer is divided by; `None` at the limit.
+    fn followed(&self, call: &Call) -> Option<(Call, f64)> {
         let Settings { max_depth, min_weight, at_limit } = self.settings;
-        if let AtLimit::Roulette { seed } = at_limit
-            && call.depth <= max_depth
-        {
-            let survival = call.weight / min_weight;
-            // A ray between two mirrors may come back bit for bit: the depth tells its turns apart.
-            let turn = seed ^ u64::from(call.depth) << 32;
-            if Uniform::of_ray(turn, &call.ray).number() < survival {
-                let survivor = Call { weight: min_weight, ..call };
-                return self.follow(&survivor, recorder, first_hit) / survival;
-            }
+        if call.depth > max_depth {
+            return None;
         }
-        recorder.cut(&call);
+        if call.weight >= min_weight {
+            return Some((*call, 1.0));
+        }
+        let AtLimit::Roulette { seed } = at_limit else { return None };
+        let survival = call.weight / min_weight;
+        // A ray between two mirrors may come back bit for bit: the depth tells its turns apart.
+        let turn = seed ^ u64::from(call.depth) << 32;
+        let survives = Uniform::of_ray(turn, &call.ray).number() < survival;
+        survives.then_some((Call { weight: min_weight, ..*call }, survival))
+    }
+
+    /// What a call at the limit returns.
+    fn at_limit(&self) -> Rgb {
         let scene = self.lighting.world.scene;
-        match at_limit {
+        match self.settings.at_limit {
             AtLimit::Black | AtLimit::Roulette { .. } => Rgb::ZERO,
             AtLimit::Ambient => scene.ambient,
             AtLimit::Background => scene.background,
@@ -211,15 +265,52 @@ impl<'a> Whitted<'a> {
     }
 }
 
-impl Call {
-    /// LR(Pt-inter, `direction`, profondeur + 1).
-    #[inline]
-    fn next(&self, surface: &SurfacePoint, direction: DVec3, k: Rgb, kind: RayKind) -> Self {
-        Self {
-            ray: surface.spawn(direction),
-            depth: self.depth + 1,
-            weight: self.weight * k.max_element(),
+/// A call that is not at the limit.
+#[derive(Clone, Copy)]
+struct Followed {
+    /// Its place among all calls.
+    k: usize,
+    weight: f64,
+    /// What its answer is divided by.
+    divisor: f64,
+}
+
+/// What follows from surfaces.
+struct Onwards {
+    /// k_s and k_t of each surface.
+    shares: Vec<[Rgb; 2]>,
+    refracted: Next,
+    mirror: Next,
+}
+
+/// The next calls of one kind.
+struct Next {
+    kind: RayKind,
+    calls: Vec<Call>,
+    /// The surface that each comes from.
+    from: Vec<usize>,
+}
+
+impl Onwards {
+    fn new(surfaces: usize) -> Self {
+        let next = |kind| Next {
             kind,
+            calls: Vec::with_capacity(surfaces),
+            from: Vec::with_capacity(surfaces),
+        };
+        Self {
+            shares: Vec::with_capacity(surfaces),
+            refracted: next(RayKind::Refracted),
+            mirror: next(RayKind::Mirror),
         }
+    }
+}
+
+impl Next {
+    /// LR(Pt-inter, direction, profondeur + 1): `weight` is that of the call before, `k` the branch's share.
+    #[inline(always)]
+    fn push(&mut self, surface: usize, ray: Ray, depth: u32, weight: f64, k: Rgb) {
+        self.calls.push(Call { ray, depth, weight: weight * k.max_element(), kind: self.kind });
+        self.from.push(surface);
     }
 }

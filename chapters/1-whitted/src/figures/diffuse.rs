@@ -67,7 +67,7 @@ fn path_radiance(
         };
         let surface = scene.surface_at(&ray, &hit);
         let n = surface.shading_normal_towards(-ray.direction);
-        radiance += weight * lighting.surface(&surface, n, -ray.direction, rays);
+        radiance += weight * lighting.surface(&surface, -ray.direction, rays);
         let rho_d = scene.reflectance(&surface).diffuse;
         let survival = rho_d.max_element();
         if random.number() >= survival {

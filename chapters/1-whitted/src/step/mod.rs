@@ -317,7 +317,8 @@ impl Walker<'_> {
         let (parent, call) = (&self.tree.nodes[k].call, &self.tree.nodes[child].call);
         let incident = parent.ray.direction;
         let n = surface.optical_normal(incident);
-        let [n1, n2] = indices(surface, self.scene.material(surface.material), incident);
+        let [n1, n2] =
+            indices(surface, self.scene.material(surface.material).refractive_index, incident);
         let theta = degrees(incident, n);
         let (share, lines) = if call.kind == RayKind::Refracted {
             let law = format!(

@@ -7,6 +7,8 @@ use lancer_core::geometry::{
 use lancer_core::intersector::{Hit, Observer};
 use lancer_core::scene::{PrimitiveId, Shape, Subset};
 
+use smallvec::SmallVec;
+
 use super::lanes::{Lanes, difference, gather};
 
 /// So many primitives are asked one and all: a tree would cost more.
@@ -24,6 +26,8 @@ pub(super) struct Few {
     spheres: Vec<([[f64; FOUR]; 3], [f64; FOUR])>,
     /// Of all places, the triangles' first.
     ids: Vec<[Option<PrimitiveId>; FOUR]>,
+    /// How many places of each group are taken.
+    counts: Vec<usize>,
 }
 
 impl Few {
@@ -36,7 +40,12 @@ impl Few {
             ids.chunks(FOUR).map(group).collect()
         };
         let (triangles, spheres) = (groups(&triangles), groups(&spheres));
-        let mut few = Self { triangles: Vec::new(), spheres: Vec::new(), ids: Vec::new() };
+        let mut few = Self {
+            triangles: Vec::new(),
+            spheres: Vec::new(),
+            ids: Vec::new(),
+            counts: Vec::new(),
+        };
         for group in &triangles {
             let mut corners = [[[f64::NAN; FOUR]; 3]; 3];
             for (place, id) in group.iter().enumerate() {
@@ -61,6 +70,7 @@ impl Few {
             few.spheres.push((centers, radii));
         }
         few.ids.extend(triangles.into_iter().chain(spheres));
+        few.counts.extend(few.ids.iter().map(|group| group.iter().flatten().count()));
         few
     }
 
@@ -69,6 +79,7 @@ impl Few {
         size_of_val(self.triangles.as_slice())
             + size_of_val(self.spheres.as_slice())
             + size_of_val(self.ids.as_slice())
+            + size_of_val(self.counts.as_slice())
     }
 
     /// All of them, in order.
@@ -77,31 +88,34 @@ impl Few {
         self.ids.iter().flatten().flatten().copied()
     }
 
-    /// Asks a ray in all lanes about four primitives at a time (`places` is [`TOGETHER`]), or four rays about one at a
-    /// time ([`APART`]). `found` is told what is met in any lane, until it says that it is enough.
+    /// Asks a ray in all lanes about four primitives at a time, or four rays about one at a time if they are `apart`.
+    /// `found` is told what is met in any lane, until it says that it is enough.
     #[inline(always)]
     fn ask<L: Lanes>(
         &self,
         lanes: L,
         rays: &Rays<L>,
-        places: &[Option<usize>],
+        apart: bool,
         range: Interval,
         mut found: impl FnMut(Met<L>) -> bool,
     ) {
-        let all = Everywhere(lanes);
+        let all = Everywhere { lanes, apart };
         let [min, max] = [all.number(range.min), all.number(range.max)];
-        for (group, [a, b, c]) in self.triangles.iter().enumerate() {
-            for &place in places {
-                let corners = [
-                    difference(all.at(a, place), rays.origin),
-                    difference(all.at(b, place), rays.origin),
-                    difference(all.at(c, place), rays.origin),
-                ];
-                let met = intersect_triangles(corners, &rays.shear, [min, max]);
-                if let Some((t, weights, met)) = met {
-                    let met = met & t.below(max);
-                    if L::D::bits(met) != 0 && found(Met { group, place, t, weights, met }) {
-                        return;
+        for Sheared { shear, along } in &rays.shears {
+            for (group, (corners, &count)) in self.triangles.iter().zip(&self.counts).enumerate() {
+                for place in 0..if apart { count } else { 1 } {
+                    let corners = [
+                        difference(all.at(&corners[0], place), rays.origin),
+                        difference(all.at(&corners[1], place), rays.origin),
+                        difference(all.at(&corners[2], place), rays.origin),
+                    ];
+                    let met = intersect_triangles(corners, shear, [min, max]);
+                    if let Some((t, weights, met)) = met {
+                        let met = met & t.below(max) & *along;
+                        let place = group * FOUR + place;
+                        if L::D::bits(met) != 0 && found(Met { place, t, weights, met }) {
+                            return;
+                        }
                     }
                 }
             }
@@ -109,13 +123,17 @@ impl Few {
         // The far point of a sphere is no hit where the near one lies beyond the range.
         let endless = [min, all.number(f64::INFINITY)];
         let weights = all.vector([0.0; 3]);
-        for (group, (centers, radii)) in (self.triangles.len()..).zip(&self.spheres) {
-            for &place in places {
+        let first = self.triangles.len();
+        for (group, ((centers, radii), &count)) in
+            (first..).zip(self.spheres.iter().zip(&self.counts[first..]))
+        {
+            for place in 0..if apart { count } else { 1 } {
                 let f = difference(rays.origin, all.at(centers, place));
                 let radius = all.of(radii, place);
                 if let Some((t, met)) = intersect_spheres(f, radius, rays.direction, endless) {
                     let met = met & t.below(max);
-                    if L::D::bits(met) != 0 && found(Met { group, place, t, weights, met }) {
+                    let place = group * FOUR + place;
+                    if L::D::bits(met) != 0 && found(Met { place, t, weights, met }) {
                         return;
                     }
                 }
@@ -125,29 +143,22 @@ impl Few {
 
     /// What is nearest in each lane.
     #[inline(always)]
-    fn nearest<L: Lanes>(
-        &self,
-        lanes: L,
-        rays: &Rays<L>,
-        places: &[Option<usize>],
-        range: Interval,
-    ) -> Nearest {
-        let all = Everywhere(lanes);
+    fn nearest<L: Lanes>(&self, lanes: L, rays: &Rays<L>, apart: bool, range: Interval) -> Nearest {
+        let all = Everywhere { lanes, apart };
         let mut nearest = all.number(f64::INFINITY);
         let mut place = all.number(-1.0);
         let mut weights = all.vector([0.0; 3]);
         self.ask(
             lanes,
             rays,
-            places,
+            apart,
             range,
             #[inline(always)]
             |met| {
                 // Of equal ones the first has the smaller id.
                 let nearer = met.met & met.t.below(nearest);
-                let first = (met.group * FOUR + met.place.unwrap_or(0)) as f64;
                 nearest = L::D::select(nearer, met.t, nearest);
-                place = L::D::select(nearer, all.number(first), place);
+                place = L::D::select(nearer, all.number(met.place as f64), place);
                 weights = [
                     L::D::select(nearer, met.weights[0], weights[0]),
                     L::D::select(nearer, met.weights[1], weights[1]),
@@ -190,7 +201,7 @@ impl Few {
         observer: &mut O,
     ) -> Option<Hit> {
         self.primitives().for_each(|primitive| observer.primitive_test(primitive));
-        let nearest = self.nearest(lanes, &Rays::same(lanes, ray), &TOGETHER, range);
+        let nearest = self.nearest(lanes, &Rays::same(lanes, ray), false, range);
         // (t, id), whose order is that of their lanes within a group.
         let key = |lane: usize| (nearest.t[lane], nearest.place[lane]);
         let mut first = 0;
@@ -212,15 +223,45 @@ impl Few {
         hits: &mut [Option<Hit>],
     ) {
         for (rays, hits) in rays.chunks(FOUR).zip(hits.chunks_mut(FOUR)) {
-            if let Some(four) = Rays::four(lanes, rays) {
-                let nearest = self.nearest(lanes, &four, &APART, range);
-                for (lane, hit) in hits.iter_mut().enumerate() {
-                    *hit = self.hit(&nearest, lane, 0);
-                }
-            } else {
-                for (ray, hit) in rays.iter().zip(hits) {
-                    *hit = self.closest(lanes, ray, range, &mut ());
-                }
+            if let [ray] = rays {
+                hits[0] = self.closest(lanes, ray, range, &mut ());
+                continue;
+            }
+            let nearest = self.nearest(lanes, &Rays::four(lanes, rays), true, range);
+            for (lane, hit) in hits.iter_mut().enumerate() {
+                *hit = self.hit(&nearest, lane, 0);
+            }
+        }
+    }
+
+    /// Whether many rays meet anything.
+    #[inline(always)]
+    pub(super) fn occluded_all<L: Lanes>(
+        &self,
+        lanes: L,
+        rays: &[Ray],
+        range: Interval,
+        occluded: &mut [bool],
+    ) {
+        for (rays, occluded) in rays.chunks(FOUR).zip(occluded.chunks_mut(FOUR)) {
+            if let [ray] = rays {
+                occluded[0] = self.any(lanes, ray, range, &mut ()).is_some();
+                continue;
+            }
+            let mut any = 0;
+            self.ask(
+                lanes,
+                &Rays::four(lanes, rays),
+                true,
+                range,
+                #[inline(always)]
+                |met| {
+                    any |= L::D::bits(met.met);
+                    any == (1 << FOUR) - 1
+                },
+            );
+            for (lane, occluded) in occluded.iter_mut().enumerate() {
+                *occluded = any >> lane & 1 != 0;
             }
         }
     }
@@ -239,11 +280,12 @@ impl Few {
         self.ask(
             lanes,
             &Rays::same(lanes, ray),
-            &TOGETHER,
+            false,
             range,
             #[inline(always)]
             |met| {
-                any = self.ids[met.group][L::D::bits(met.met).trailing_zeros() as usize % FOUR];
+                any = self.ids[met.place / FOUR]
+                    [L::D::bits(met.met).trailing_zeros() as usize % FOUR];
                 true
             },
         );
@@ -251,51 +293,61 @@ impl Few {
     }
 }
 
-/// The places of a group are asked about together, one in each lane.
-const TOGETHER: [Option<usize>; 1] = [None];
-/// The places of a group are asked about one after the other, each in all lanes.
-const APART: [Option<usize>; FOUR] = [Some(0), Some(1), Some(2), Some(3)];
-
 /// A ray in each lane.
 struct Rays<L: Lanes> {
     origin: [L::D; 3],
     direction: [L::D; 3],
-    shear: Shear<L::D>,
+    /// For each axis along which rays go most.
+    shears: SmallVec<[Sheared<L::D>; 3]>,
 }
 
 impl<L: Lanes> Rays<L> {
     /// The same in all lanes.
     #[inline(always)]
     fn same(lanes: L, ray: &Ray) -> Self {
-        let all = Everywhere(lanes);
+        let all = Everywhere { lanes, apart: false };
         let origin = all.vector([ray.origin.x, ray.origin.y, ray.origin.z]);
         let direction = all.vector([ray.direction.x, ray.direction.y, ray.direction.z]);
         let shear = Shear::along(Axis::longest(ray.direction), direction);
-        Self { origin, direction, shear }
+        let along = all.number(0.0).at_most(all.number(0.0));
+        Self { origin, direction, shears: SmallVec::from_iter([Sheared { shear, along }]) }
     }
 
-    /// Four rays, if there are four and they go along the same axis most.
+    /// Up to four, the last one in all lanes that are left.
     #[inline(always)]
-    fn four(lanes: L, rays: &[Ray]) -> Option<Self> {
-        let [a, b, c, d] = rays else { return None };
-        let axis = Axis::longest(a.direction);
-        if axis != Axis::longest(b.direction)
-            || axis != Axis::longest(c.direction)
-            || axis != Axis::longest(d.direction)
-        {
-            return None;
-        }
+    fn four(lanes: L, rays: &[Ray]) -> Self {
+        let last = rays.len() - 1;
+        let [a, b, c, d] = [&rays[0], &rays[last.min(1)], &rays[last.min(2)], &rays[last.min(3)]];
         let origin = gather(lanes, [a.origin, b.origin, c.origin, d.origin]);
         let direction = gather(lanes, [a.direction, b.direction, c.direction, d.direction]);
-        Some(Self { origin, direction, shear: Shear::along(axis, direction) })
+        let longest = [
+            Axis::longest(a.direction),
+            Axis::longest(b.direction),
+            Axis::longest(c.direction),
+            Axis::longest(d.direction),
+        ];
+        let mut shears = SmallVec::new();
+        for axis in [Axis::X, Axis::Y, Axis::Z] {
+            if longest.contains(&axis) {
+                let of = |lane: usize| f64::from(u8::from(longest[lane] != axis));
+                let along = lanes.four([of(0), of(1), of(2), of(3)]).at_most(lanes.four([0.0; 4]));
+                shears.push(Sheared { shear: Shear::along(axis, direction), along });
+            }
+        }
+        Self { origin, direction, shears }
     }
+}
+
+/// The shear of rays that go along one axis most, and the lanes with such a ray.
+struct Sheared<T: Real> {
+    shear: Shear<T>,
+    along: T::Mask,
 }
 
 /// What is met in some lanes.
 struct Met<L: Lanes> {
-    group: usize,
-    /// `None` if each lane has its own.
-    place: Option<usize>,
+    /// Among all; if each lane has its own, that of the first.
+    place: usize,
     t: L::D,
     weights: [L::D; 3],
     met: <L::D as Real>::Mask,
@@ -311,12 +363,15 @@ struct Nearest {
 
 /// Fills lanes.
 #[derive(Clone, Copy)]
-struct Everywhere<L>(L);
+struct Everywhere<L> {
+    lanes: L,
+    apart: bool,
+}
 
 impl<L: Lanes> Everywhere<L> {
     #[inline(always)]
     fn number(self, x: f64) -> L::D {
-        self.0.four([x; FOUR])
+        self.lanes.four([x; FOUR])
     }
 
     #[inline(always)]
@@ -326,15 +381,12 @@ impl<L: Lanes> Everywhere<L> {
 
     /// The number of one place, or those of all.
     #[inline(always)]
-    fn of(self, places: &[f64; FOUR], place: Option<usize>) -> L::D {
-        match place {
-            Some(place) => self.number(places[place]),
-            None => self.0.four(*places),
-        }
+    fn of(self, places: &[f64; FOUR], place: usize) -> L::D {
+        if self.apart { self.number(places[place]) } else { self.lanes.four(*places) }
     }
 
     #[inline(always)]
-    fn at(self, [x, y, z]: &[[f64; FOUR]; 3], place: Option<usize>) -> [L::D; 3] {
+    fn at(self, [x, y, z]: &[[f64; FOUR]; 3], place: usize) -> [L::D; 3] {
         [self.of(x, place), self.of(y, place), self.of(z, place)]
     }
 }

@@ -19,7 +19,9 @@ use lancer_core::geometry::{ConvexVolume, Interval, Ray};
 use lancer_core::intersector::{
     BeamIndex, BeamTraversal, Hit, Intersector, Observer, Probe, Query, Wanted,
 };
+use lancer_core::lanes::{Kernel, Scalar};
 use lancer_core::scene::{PrimitiveId, Scene, Subset};
+use lancer_core::with_lanes;
 
 use crate::binary_tree::{BinaryTree, Coverage};
 use crate::bvh::Items;
@@ -27,9 +29,7 @@ use crate::four_boxes::{Frame, FrameBox};
 use crate::front::Front;
 use collapse::WIDTH;
 use few::{FEW, Few};
-#[cfg(target_arch = "x86_64")]
-use lanes::avx2::Avx2;
-use lanes::{Lanes, Scalar};
+use lanes::Lanes;
 use leaf::{HEADER, RECORD, UNIT, integer_of};
 
 /// A hierarchy of eight children per node: culled eight at a time in `f32`, answered in `f64`.
@@ -90,44 +90,6 @@ pub struct Wide<'s> {
 
 /// What rays may cost in a tree of split primitives, as a share of the cost in one of whole primitives: it is larger.
 const WORTH: f64 = 0.97;
-
-/// What computes with eight lanes.
-#[derive(Clone, Copy, Debug)]
-enum Kernel {
-    #[cfg(target_arch = "x86_64")]
-    Avx2(Avx2),
-    Scalar(Scalar),
-}
-
-impl Kernel {
-    fn best() -> Self {
-        #[cfg(target_arch = "x86_64")]
-        if let Some(avx2) = Avx2::detect() {
-            return Self::Avx2(avx2);
-        }
-        Self::Scalar(Scalar)
-    }
-}
-
-/// Calls a method of [`Wide`] with the lanes of its kernel, compiled for them.
-macro_rules! with_lanes {
-    ($wide:ident.$method:ident($a:expr, $b:expr, $c:expr)) => {
-        match $wide.kernel {
-            #[cfg(target_arch = "x86_64")]
-            Kernel::Avx2(lanes) => lanes.call(
-                $wide,
-                $a,
-                $b,
-                $c,
-                #[inline(always)]
-                |lanes, wide, a, b, c| wide.$method(lanes, a, b, c),
-            ),
-            Kernel::Scalar(lanes) => {
-                lanes.call($wide, $a, $b, $c, |lanes, wide, a, b, c| wide.$method(lanes, a, b, c))
-            }
-        }
-    };
-}
 
 /// An inner node. A lane without a child has an empty box, which no ray meets.
 #[repr(align(64))]
@@ -337,7 +299,7 @@ impl<'s> Wide<'s> {
 
     #[inline(always)]
     fn closest<O: Observer>(&self, ray: &Ray, range: Interval, observer: &mut O) -> Option<Hit> {
-        with_lanes!(self.closest_by(ray, range, observer))
+        with_lanes!(self.kernel, self.closest_by(ray, range, observer))
     }
 
     #[inline(always)]
@@ -347,7 +309,7 @@ impl<'s> Wide<'s> {
         range: Interval,
         observer: &mut O,
     ) -> Option<PrimitiveId> {
-        with_lanes!(self.any_by(ray, range, observer))
+        with_lanes!(self.kernel, self.any_by(ray, range, observer))
     }
 
     #[inline(always)]
@@ -400,8 +362,11 @@ impl<'s> Wide<'s> {
         range: Interval,
         occluded: &mut [bool],
     ) {
+        if let Some(few) = &self.few {
+            return few.occluded_all(lanes, rays, range, occluded);
+        }
         for (ray, occluded) in rays.iter().zip(occluded) {
-            *occluded = self.any_by(lanes, ray, range, &mut ()).is_some();
+            *occluded = walk::any(lanes, self, ray, range, &mut ()).is_some();
         }
     }
 }
@@ -413,7 +378,7 @@ impl Intersector for Wide<'_> {
 
     fn closest_hits(&self, rays: &[Ray], range: Interval, hits: &mut [Option<Hit>]) {
         assert_eq!(rays.len(), hits.len(), "one answer for each ray");
-        with_lanes!(self.closest_hits_by(rays, range, hits));
+        with_lanes!(self.kernel, self.closest_hits_by(rays, range, hits));
     }
 
     fn occluded(&self, ray: &Ray, range: Interval) -> bool {
@@ -422,7 +387,7 @@ impl Intersector for Wide<'_> {
 
     fn occluded_all(&self, rays: &[Ray], range: Interval, occluded: &mut [bool]) {
         assert_eq!(rays.len(), occluded.len(), "one answer for each ray");
-        with_lanes!(self.occluded_all_by(rays, range, occluded));
+        with_lanes!(self.kernel, self.occluded_all_by(rays, range, occluded));
     }
 
     fn watch(&self, query: Query<&Ray>, mut observer: &mut dyn Observer) -> Option<Hit> {

@@ -1,4 +1,4 @@
-use glam::DVec3;
+use super::{Real, Vector};
 
 /// The origin of a ray that leaves a computed point of a surface.
 ///
@@ -8,8 +8,8 @@ use glam::DVec3;
 /// coordinates: no epsilon has to be chosen for a scene's scale.
 ///
 /// Source: Pharr, Jakob, Humphreys, *Physically Based Rendering*, 4th ed., §6.8.6.
-#[inline]
-pub fn leave_surface(position: DVec3, error: DVec3, n: DVec3, direction: DVec3) -> DVec3 {
+#[inline(always)]
+pub fn leave_surface<V: Vector>(position: V, error: V, n: V, direction: V) -> V {
     let distance = n.abs().dot(error);
-    position + distance.copysign(n.dot(direction)) * n
+    position + n * distance.copysign(n.dot(direction))
 }

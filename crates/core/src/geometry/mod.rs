@@ -11,12 +11,14 @@ mod real;
 mod sphere;
 mod triangle;
 mod triangulate;
+mod vector;
 mod volume;
 
 pub use bounds::{Bounds3, Slabs};
 pub use leave::leave_surface;
 pub use ray::{Interval, Ray};
 pub use real::Real;
+pub(crate) use real::powers;
 pub use sphere::{Sphere, intersect_spheres};
 pub use triangle::{
     Axis, Shear, TriangleHit, intersect_triangle, intersect_triangles, solve_triangle,
@@ -24,6 +26,7 @@ pub use triangle::{
 #[cfg(test)]
 pub(crate) use triangulate::newell_normal;
 pub(crate) use triangulate::triangulate;
+pub use vector::{Vector, Vectors};
 pub use volume::{ConvexVolume, HalfSpace};
 
 /// γ(n): bounds the relative error of n rounded `f64` operations.

@@ -4,20 +4,22 @@ use glam::DVec3;
 ///
 /// `direction` need not be a unit vector; a hit parameter `t` is in units of its length.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ray {
+pub struct Ray<V = DVec3> {
     /// The point where the ray starts.
-    pub origin: DVec3,
+    pub origin: V,
     /// The direction of travel.
-    pub direction: DVec3,
+    pub direction: V,
+}
+
+impl<V> Ray<V> {
+    /// The ray from `origin` towards `direction`.
+    #[inline]
+    pub const fn new(origin: V, direction: V) -> Self {
+        Self { origin, direction }
+    }
 }
 
 impl Ray {
-    /// The ray from `origin` towards `direction`.
-    #[inline]
-    pub const fn new(origin: DVec3, direction: DVec3) -> Self {
-        Self { origin, direction }
-    }
-
     /// The point `origin + t · direction`.
     #[inline]
     pub fn at(&self, t: f64) -> DVec3 {

@@ -31,6 +31,8 @@ pub trait Real:
     fn select(mask: Self::Mask, x: Self, y: Self) -> Self;
     /// A mask as bits, the first place being the lowest.
     fn bits(mask: Self::Mask) -> u32;
+    /// x to a power where the mask is set, 0 elsewhere.
+    fn power(self, exponent: Self, mask: Self::Mask) -> Self;
 
     /// 1 / x
     #[inline(always)]
@@ -61,6 +63,12 @@ pub(super) fn dot<T: Real>(a: [T; 3], b: [T; 3]) -> T {
 #[inline(always)]
 pub(super) fn cross<T: Real>(a: [T; 3], b: [T; 3]) -> [T; 3] {
     [a[1] * b[2] - b[1] * a[2], a[2] * b[0] - b[2] * a[0], a[0] * b[1] - b[0] * a[1]]
+}
+
+/// Of four numbers those powers whose bits are set.
+#[inline]
+pub(crate) fn powers(x: [f64; 4], exponent: [f64; 4], bits: u32) -> [f64; 4] {
+    std::array::from_fn(|k| x[k].power(exponent[k], bits >> k & 1 != 0))
 }
 
 impl Real for f64 {
@@ -105,6 +113,11 @@ impl Real for f64 {
     fn bits(mask: bool) -> u32 {
         mask.into()
     }
+
+    #[inline(always)]
+    fn power(self, exponent: Self, mask: bool) -> Self {
+        if mask { self.powf(exponent) } else { 0.0 }
+    }
 }
 
 impl Real for DVec4 {
@@ -148,5 +161,10 @@ impl Real for DVec4 {
     #[inline(always)]
     fn bits(mask: BVec4) -> u32 {
         mask.bitmask()
+    }
+
+    #[inline(always)]
+    fn power(self, exponent: Self, mask: BVec4) -> Self {
+        powers(self.to_array(), exponent.to_array(), mask.bitmask()).into()
     }
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{FaceId, Material, Scene};
 use crate::Rgb;
-use crate::geometry::gamma;
+use crate::geometry::{Real, Vector, gamma};
 use crate::illumination::Arriving;
 use crate::world::SurfacePoint;
 
@@ -36,19 +36,30 @@ pub struct PointSource {
 
 impl PointSource {
     /// The intensity in the direction `-to_light`, where `to_light` is unit and points at the source.
-    #[inline]
-    pub fn intensity_towards(&self, to_light: DVec3) -> Rgb {
+    #[inline(always)]
+    pub fn intensity_towards<V: Vector>(&self, to_light: V) -> V {
+        let intensity = to_light.all(self.intensity);
         match self.facing {
-            None => self.intensity,
-            Some(n) => self.intensity * (-n.dot(to_light)).max(0.0),
+            None => intensity,
+            Some(n) => {
+                let cos = -to_light.all(n).dot(to_light);
+                intensity * cos.larger(cos.all(0.0))
+            }
         }
     }
 
     /// What arrives from it at a surface.
-    #[inline]
-    pub fn arriving(&self, surface: &SurfacePoint) -> Arriving<impl Fn(DVec3) -> Rgb + use<'_>> {
-        let shadow_ray = surface.spawn_to(self.position);
-        Arriving { shadow_ray, intensity: |to_light| self.intensity_towards(to_light) }
+    #[inline(always)]
+    pub fn arriving<V: Vector, M>(
+        &self,
+        surface: &SurfacePoint<V, M>,
+    ) -> Arriving<impl Fn(V) -> V + use<'_, V, M>, V> {
+        let shadow_ray = surface.spawn_to(surface.position.all(self.position));
+        Arriving::new(
+            shadow_ray,
+            #[inline(always)]
+            |to_light| self.intensity_towards(to_light),
+        )
     }
 }
 

@@ -1,21 +1,18 @@
-//! Eight `f32`, or four `f64`, at once: by AVX2 where the processor has it, and by a scalar twin everywhere.
+//! Eight `f32` at once, besides four `f64`: by AVX2 where the processor has it, and by a scalar twin everywhere.
 
 #[cfg(target_arch = "x86_64")]
 #[allow(unsafe_code)]
-pub(super) mod avx2;
+mod avx2;
 
 use glam::{DVec3, DVec4};
 use lancer_core::geometry::Real;
+use lancer_core::lanes::{FourLanes, Scalar};
 
-/// A way to compute with eight numbers, or four, at once.
-///
-/// The value says that the processor can do it. The twins may round differently (`mul_add` rounds once or
+/// A way to compute with eight numbers, or four, at once. The twins may round differently (`mul_add` rounds once or
 /// twice): the bounds of the tests hold for both, and so do their answers.
-pub(super) trait Lanes: Copy {
+pub(super) trait Lanes: FourLanes {
     /// Eight numbers.
     type F: Copy;
-    /// Four `f64`.
-    type D: Real;
     /// One `f64`, perhaps several times.
     type One: Real;
 
@@ -45,8 +42,6 @@ pub(super) trait Lanes: Copy {
     fn above(self, a: Self::F, b: Self::F) -> u32;
     /// `a` in the lanes whose bit is set, `b` in the others.
     fn select(self, bits: u32, a: Self::F, b: Self::F) -> Self::F;
-    fn four(self, x: [f64; 4]) -> Self::D;
-    fn numbers(self, x: Self::D) -> [f64; 4];
     fn one(self, x: f64) -> Self::One;
     fn number(self, x: Self::One) -> f64;
     /// Eight `f64`, rounded.
@@ -58,16 +53,6 @@ pub(super) trait Lanes: Copy {
     fn read_alone(self, x: &f64) -> f64;
     /// Brings what will be read soon into the caches.
     fn prefetch<T>(self, soon: &T);
-    /// Calls `f`, which is compiled for this way with everything inlined into it. Arguments go in registers:
-    /// through the memory of a closure they would be read in other pieces than written.
-    fn call<A, B, C, D, R>(
-        self,
-        a: A,
-        b: B,
-        c: C,
-        d: D,
-        f: impl FnOnce(Self, A, B, C, D) -> R,
-    ) -> R;
     /// Calls `f`, compiled apart: what it needs in registers does not displace what its caller has there.
     fn apart<R>(self, f: impl FnOnce(Self) -> R) -> R;
 }
@@ -128,10 +113,6 @@ pub(super) fn most<L: Lanes>(l: L, x: L::F) -> f32 {
     -least(l, l.sub(l.splat(0.0), x))
 }
 
-/// One lane after the other. The compiler makes of it what the target always has: SSE2, NEON.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Scalar;
-
 #[inline(always)]
 fn each<T, const N: usize>(f: impl FnMut(usize) -> T) -> [T; N] {
     std::array::from_fn(f)
@@ -144,7 +125,6 @@ fn bits(f: impl Fn(usize) -> bool) -> u32 {
 
 impl Lanes for Scalar {
     type F = [f32; 8];
-    type D = DVec4;
     type One = f64;
 
     #[inline(always)]
@@ -233,16 +213,6 @@ impl Lanes for Scalar {
     }
 
     #[inline(always)]
-    fn four(self, x: [f64; 4]) -> DVec4 {
-        x.into()
-    }
-
-    #[inline(always)]
-    fn numbers(self, x: DVec4) -> [f64; 4] {
-        x.into()
-    }
-
-    #[inline(always)]
     fn one(self, x: f64) -> f64 {
         x
     }
@@ -269,18 +239,6 @@ impl Lanes for Scalar {
 
     #[inline(always)]
     fn prefetch<T>(self, _: &T) {}
-
-    #[inline(never)]
-    fn call<A, B, C, D, R>(
-        self,
-        a: A,
-        b: B,
-        c: C,
-        d: D,
-        f: impl FnOnce(Self, A, B, C, D) -> R,
-    ) -> R {
-        f(self, a, b, c, d)
-    }
 
     #[inline(never)]
     fn apart<R>(self, f: impl FnOnce(Self) -> R) -> R {
