@@ -34,7 +34,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         solution: Solution {
             answer: include_str!("../../solutions/e07_refracted_ray.rs"),
             file: "crates/core/src/optics.rs",
-            item: "pub fn refract",
+            item: "pub fn refract_all",
             notice: "1 − cos² θ₁ is written (1 − cos θ₁)(1 + cos θ₁): near normal incidence the difference of \
                      squares loses its digits",
         },
