@@ -1,23 +1,9 @@
-//! The samples of a pixel and their random numbers. Everything follows from (seed, pixel, sample index)
-//! alone, so a picture does not depend on who renders which pixel when.
-//!
-//! A sample's numbers come in sets of four ([`Sample::numbers`]), each set a scrambled Sobol sequence of its own:
-//! what belongs together must share one, since only within a set are many samples stratified together.
-//!
-//! | set | numbers 0 and 1                                       | numbers 2 and 3                          |
-//! |-----|-------------------------------------------------------|------------------------------------------|
-//! | 0   | the film point in its pixel, by [`Pattern::Owen`]     | reserved for the point on the first lamp |
-//!
-//! A method that needs more takes the next free sets and adds its rows here.
-
-use std::f64::consts::TAU;
 use std::ops::Range;
 
-use glam::{DVec2, DVec3};
-use rand_pcg::Pcg32;
-use rand_pcg::rand_core::Rng;
+use glam::DVec2;
 
-use crate::geometry::Ray;
+use super::keys::{STEP, mix, pixel_key};
+use super::{Uniform, sobol};
 
 /// How the samples of a pixel are laid out on the film. Their other numbers are the same for all patterns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,8 +48,16 @@ impl Sample {
     /// Sobol's sequence is. Two sets, and two pixels, are independent.
     #[inline]
     pub fn numbers(&self, set: u32) -> [f64; 4] {
-        let (index, seed) = sobol_place(self.index, set_key(self.key, set));
-        sobol_burley::sample_4d(index, 0, seed).map(f64::from)
+        numbers(self.index, set_key(self.key, set))
+    }
+
+    /// What the sample is at a surface further on, along the ray of this number that leaves the one it is at: it has
+    /// sets of its own, of which none is one of `self` or of another ray. A path of any length, or a tree of rays,
+    /// needs no numbers of sets beyond the table's.
+    #[inline]
+    #[must_use]
+    pub fn along(&self, ray: u32) -> Self {
+        Self { key: set_key(self.key, u32::MAX - ray), ..*self }
     }
 }
 
@@ -91,7 +85,7 @@ impl PixelSampling {
         self,
         x: u32,
         y: u32,
-        numbers: Range<u32>,
+        indices: Range<u32>,
     ) -> impl Iterator<Item = Sample> {
         let corner = DVec2::new(f64::from(x), f64::from(y));
         let key = pixel_key(self.seed, x, y);
@@ -99,7 +93,7 @@ impl PixelSampling {
             Pattern::Regular | Pattern::Jittered => grid(self.samples),
             Pattern::Owen => [1, 1],
         };
-        numbers.map(move |index| {
+        indices.map(move |index| {
             let in_cell = |place: DVec2| {
                 if cells == [1, 1] {
                     return place;
@@ -114,7 +108,10 @@ impl PixelSampling {
                     random.skip(2 * u64::from(index));
                     in_cell(DVec2::new(random.number(), random.number()))
                 }
-                Pattern::Owen => owen(index, key),
+                Pattern::Owen => {
+                    let [x, y, _, _] = numbers(index, key);
+                    DVec2::new(x, y)
+                }
             };
             Sample { film: corner + in_pixel, pixel: [x, y], index, key }
         })
@@ -131,86 +128,18 @@ fn grid(samples: u32) -> [u32; 2] {
     [samples / rows, rows]
 }
 
-/// Independent random numbers of a pixel, or of anything else that has two coordinates: they follow
-/// from (seed, x, y) alone.
-#[derive(Clone, Debug)]
-pub struct Uniform(Pcg32);
-
-impl Uniform {
-    /// The numbers of (`seed`, `x`, `y`), from the first on.
-    pub fn new(seed: u64, x: u32, y: u32) -> Self {
-        Self::with_key(pixel_key(seed, x, y))
-    }
-
-    /// The numbers of a ray: they follow from `seed` and the bits of its origin and direction alone.
-    pub fn of_ray(seed: u64, ray: &Ray) -> Self {
-        let coordinates = [ray.origin, ray.direction].into_iter().flat_map(|v| v.to_array());
-        let key = coordinates
-            .fold(mix(seed), |key, coordinate| mix(key.wrapping_add(STEP) ^ coordinate.to_bits()));
-        Self::with_key(key)
-    }
-
-    fn with_key(key: u64) -> Self {
-        Self(Pcg32::new(key, key))
-    }
-
-    /// Leaves out so many numbers.
-    fn skip(&mut self, count: u64) {
-        // The generator gives 32 bits at a time.
-        self.0.advance(2 * count);
-    }
-
-    /// The next number in [0, 1), with 53 random bits.
-    #[inline]
-    pub fn number(&mut self) -> f64 {
-        (self.0.next_u64() >> 11) as f64 * (0.5 * f64::EPSILON)
-    }
-
-    /// A unit vector, all directions being equally likely: a sphere's zones of equal height have equal
-    /// areas (Archimedes).
-    #[inline]
-    pub fn direction(&mut self) -> DVec3 {
-        let (z, (sin, cos)) = (2.0 * self.number() - 1.0, (TAU * self.number()).sin_cos());
-        let r = (1.0 - z * z).max(0.0).sqrt();
-        DVec3::new(r * cos, r * sin, z)
-    }
-}
-
-/// Numbers 0 and 1 of a pixel's set 0.
+/// The four numbers that follow from a sample's index and the key of a set. The generator ends after 2^16 points; each
+/// further block of that length is another scrambling.
 #[inline]
-fn owen(index: u32, key: u64) -> DVec2 {
-    let (index, seed) = sobol_place(index, key);
-    let coordinate = |dimension| f64::from(sobol_burley::sample(index, dimension, seed));
-    DVec2::new(coordinate(0), coordinate(1))
-}
-
-/// Where sample `index` stands in the library's sequences: its index and seed there. The generator ends after
-/// 2^16 points; each further block of that length is another scrambling.
-#[inline]
-fn sobol_place(index: u32, key: u64) -> (u32, u32) {
-    const BLOCK: u32 = 1 << 16;
-    (index % BLOCK, (key as u32).wrapping_add(index / BLOCK))
+fn numbers(index: u32, key: u64) -> [f64; 4] {
+    let seed = (key as u32).wrapping_add(index / sobol::POINTS);
+    sobol::scrambled(index % sobol::POINTS, seed).map(f64::from)
 }
 
 /// The key of a set of numbers; that of set 0 is the pixel's own.
 #[inline]
 fn set_key(key: u64, set: u32) -> u64 {
     if set == 0 { key } else { mix(key.wrapping_add(u64::from(set).wrapping_mul(STEP))) }
-}
-
-/// A well-mixed key for each (seed, pixel): the finaliser of SplitMix64 (Steele, Lea, Flood 2014).
-fn pixel_key(seed: u64, x: u32, y: u32) -> u64 {
-    let pixel = (u64::from(y) << 32) | u64::from(x);
-    mix(mix(seed).wrapping_add(pixel.wrapping_mul(STEP)))
-}
-
-/// 2⁶⁴ divided by the golden ratio, SplitMix64's own step: it keeps zeros from staying zeros.
-const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
-
-fn mix(mut z: u64) -> u64 {
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
 }
 
 #[cfg(test)]
@@ -361,52 +290,6 @@ mod tests {
         let points = film_points(sampling, 0, 0);
         assert_ne!(points[..4], points[1 << 16..]);
         assert!(points.iter().all(|p| p.min_element() >= 0.0 && p.max_element() < 1.0));
-    }
-
-    /// z and the square of the distance from the axis have the means 0 and 2/3, with standard deviations
-    /// √(1/3) and √(4/45); a false alarm in a million.
-    #[test]
-    fn directions_favour_none() {
-        let count = 100_000;
-        let mut random = Uniform::new(1, 2, 3);
-        let (mut mean, mut from_axes) = (DVec3::ZERO, DVec3::ZERO);
-        for _ in 0..count {
-            let d = random.direction();
-            assert!((d.length() - 1.0).abs() < 4.0 * f64::EPSILON);
-            mean += d / f64::from(count);
-            from_axes += (1.0 - d * d) / f64::from(count);
-        }
-        let z = 5.3 / f64::from(count).sqrt();
-        assert!(mean.abs().max_element() < z * (1.0_f64 / 3.0).sqrt(), "{mean}");
-        let off = (from_axes - 2.0 / 3.0).abs().max_element();
-        assert!(off < z * (4.0_f64 / 45.0).sqrt(), "{from_axes}");
-    }
-
-    /// The first numbers of rays that differ in one coordinate, one rounding apart, and of one ray under
-    /// many seeds: means ½ and products of neighbours ¼, with standard deviations √(1/12) and √(7)/12; a
-    /// false alarm in a million.
-    #[test]
-    fn rays_and_seeds_have_independent_numbers() {
-        let count = 100_000_u64;
-        let near = |k: u64| f64::from_bits(2.5_f64.to_bits() + k);
-        let ray = |x: f64| Ray::new(DVec3::new(x, 0.0, -1.0), DVec3::Z);
-        let first = |seed: u64, x: f64| Uniform::of_ray(seed, &ray(x)).number();
-        let numbers: [Vec<f64>; 2] = [
-            (0..count).map(|k| first(1, near(k))).collect(),
-            (0..count).map(|seed| first(seed, 2.5)).collect(),
-        ];
-        for numbers in numbers {
-            let mean = numbers.iter().sum::<f64>() / count as f64;
-            let products = numbers.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>();
-            let z = 5.1 / (count as f64).sqrt();
-            assert!((mean - 0.5).abs() < z * (1.0_f64 / 12.0).sqrt(), "{mean}");
-            let product = products / (count - 1) as f64;
-            // Neighbouring products share a factor, which less than doubles the variance 7/144.
-            assert!((product - 0.25).abs() < z * (2.0 * 7.0_f64).sqrt() / 12.0, "{product}");
-        }
-        assert_eq!(first(3, 2.5), first(3, 2.5));
-        let turned = Ray::new(ray(2.5).origin, DVec3::Y);
-        assert_ne!(Uniform::of_ray(3, &turned).number(), first(3, 2.5));
     }
 
     #[test]
