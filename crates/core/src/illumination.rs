@@ -9,7 +9,7 @@
 //! Of all directions the model keeps S', the lights, the mirror and the refracted direction, and puts
 //! the constant `eq:ambient` in place of the rest, Ω'. (The slide writes dᵢ for ωᵢ, and Ω' = Ω − S; with S the mirror
 //! directions would be counted twice.) What is left is one small function per term:
-//! [`attenuation`], [`local`] and [`ambient`]; the recursion over R and T is chapter 1's.
+//! [`attenuation`], [`local`] and [`ambient`], and [`recursion`] adds what comes back along R and T.
 
 use glam::DVec3;
 
@@ -160,4 +160,20 @@ pub fn lit<I: Fn(DVec3) -> Rgb>(
         }
     }
     radiance
+}
+
+/// Radiance along a ray.
+///
+/// ```text
+/// eq:recursion            I_R = I_Local + k_s I_Refl + k_t I_Trans
+/// ```
+///
+/// (The algorithm's last line on the slides adds the three components without k_s and k_t; the
+/// formula is right.)
+///
+/// Slide « Intensité lumineuse sur un rayon ».
+#[doc(alias = "eq:recursion")]
+#[inline]
+pub fn recursion(local: Rgb, k_s: Rgb, reflected: Rgb, k_t: Rgb, refracted: Rgb) -> Rgb {
+    local + k_s * reflected + k_t * refracted
 }

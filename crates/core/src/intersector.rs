@@ -20,6 +20,14 @@ pub struct Hit {
     pub barycentric: DVec3,
 }
 
+impl Hit {
+    /// Whether it answers rather than `other` what one ray meets: it is nearer, or of equals has the smaller id.
+    #[inline]
+    pub fn is_before(&self, other: &Self) -> bool {
+        self.t < other.t || self.t == other.t && self.primitive < other.primitive
+    }
+}
+
 /// Which hit answers a [`Query`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wanted {

@@ -17,6 +17,7 @@ pub mod intersector;
 pub mod lanes;
 pub mod method;
 pub mod metric;
+pub mod moving;
 pub mod optics;
 pub mod render;
 pub mod sampling;

@@ -11,7 +11,7 @@ use crate::image::{Image, ImageSize};
 use crate::intersector::Intersector;
 use crate::render::{Cancelled, Control, Estimator, Film, render_adaptive, render_pixels};
 use crate::sampling::PixelSampling;
-use crate::scene::{Scene, Subset};
+use crate::scene::{Motion, Scene, Subset};
 
 /// A way to draw scenes.
 pub struct Method {
@@ -37,14 +37,52 @@ pub struct Method {
 pub enum Setting {
     /// [`Order::sampling`]: the number and the seed of a pixel's samples.
     Sampling,
+    /// What a sample has beside its film point, [`Sample::numbers`](crate::sampling::Sample::numbers): with another
+    /// seed one sample in a pixel's centre is another, too.
+    Numbers,
     /// [`Order::adaptive`].
     Adaptive,
     /// [`Order::max_depth`].
     MaxDepth,
+    /// [`Order::branching`].
+    Branching,
+    /// [`Order::strategy`].
+    Strategy,
     /// [`Order::index`], where the choice changes more than the time.
     Index,
     /// [`Order::index`] as beams ask it, which not every kind of index can answer.
     Beams,
+}
+
+/// Which rays go on from a surface that both reflects and refracts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Branching {
+    /// The mirror ray and the refracted ray.
+    Both,
+    /// One of the two, at random: its answer counts for what it had of the chances.
+    One,
+}
+
+impl Branching {
+    /// All of them, each with its name on the command line.
+    pub const ALL: [(&'static str, Self); 2] = [("both", Self::Both), ("one", Self::One)];
+}
+
+/// How the light of lamps is found that a surface sends to the eye. All find the same light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Strategy {
+    /// By rays to points drawn on lamps.
+    Lamp,
+    /// By rays in directions drawn from what the surface reflects, if they meet a lamp.
+    Lobe,
+    /// By both, weighted by [`power_heuristic`](crate::sampling::power_heuristic).
+    Mis,
+}
+
+impl Strategy {
+    /// All of them, each with its name on the command line.
+    pub const ALL: [(&'static str, Self); 3] =
+        [("lamp", Self::Lamp), ("lobe", Self::Lobe), ("mis", Self::Mis)];
 }
 
 /// What makes a scene harder to draw than matte surfaces lit by points.
@@ -56,6 +94,14 @@ pub enum Effect {
     Glass,
     /// A lamp that has a size, and so a penumbra.
     AreaLights,
+    /// A rough surface that reflects or lets light pass, and spreads it.
+    Gloss,
+    /// A lens, which has one plane in focus.
+    Lens,
+    /// Something that moves while the shutter is open.
+    Motion,
+    /// The ambient constant.
+    Ambient,
 }
 
 impl Effect {
@@ -66,7 +112,13 @@ impl Effect {
         match self {
             Self::Mirrors => used.any(|id| scene.material(id).k_s != Rgb::ZERO),
             Self::Glass => used.any(|id| scene.material(id).k_t != Rgb::ZERO),
-            Self::AreaLights => !scene.area_lights().is_empty(),
+            Self::AreaLights => {
+                !(scene.area_lights().is_empty() && scene.sphere_lights().is_empty())
+            }
+            Self::Gloss => used.any(|id| scene.material(id).is_glossy()),
+            Self::Lens => scene.camera.lens.is_some_and(|lens| lens.radius > 0.0),
+            Self::Motion => scene.motions.iter().any(Motion::is_seen),
+            Self::Ambient => scene.ambient != Rgb::ZERO,
         }
     }
 }
@@ -77,6 +129,10 @@ impl fmt::Display for Effect {
             Self::Mirrors => "mirrors (k_s)",
             Self::Glass => "glass (k_t)",
             Self::AreaLights => "the size of lamps (they count as points)",
+            Self::Gloss => "gloss (mirrors and glass count as smooth)",
+            Self::Lens => "the lens (all is in focus)",
+            Self::Motion => "motion (all is where it is as the shutter opens)",
+            Self::Ambient => "the ambient constant (the light that it stands for is followed)",
         })
     }
 }
@@ -112,6 +168,10 @@ pub struct Order<'a> {
     pub adaptive: Option<f64>,
     /// The largest number of bounces between the eye and a surface; `None` is the method's own choice.
     pub max_depth: Option<u32>,
+    /// Which rays go on where there are two; `None` is the method's own choice.
+    pub branching: Option<Branching>,
+    /// How the light of lamps is found; `None` is the method's own choice.
+    pub strategy: Option<Strategy>,
     /// Names of by-products, of which the method has all.
     pub by_products: &'a [&'static str],
     /// How it is run.
@@ -128,6 +188,8 @@ impl<'a> Order<'a> {
             sampling: PixelSampling::CENTER,
             adaptive: None,
             max_depth: None,
+            branching: None,
+            strategy: None,
             by_products: &[],
             control: Control::default(),
         }
@@ -235,10 +297,16 @@ impl fmt::Display for Work {
 
 #[cfg(test)]
 mod tests {
+    use std::ops::Range;
+
+    use glam::DVec3;
+
     use super::*;
     use crate::generate::icosphere;
+    use crate::geometry::Sphere;
     use crate::intersector::LinearScan;
     use crate::sampling::{Pattern, Sample};
+    use crate::scene::{Lens, Material, MaterialId, Part, SphereObject};
 
     #[test]
     fn only_counts_of_one_kind_are_added() {
@@ -290,6 +358,54 @@ mod tests {
                 assert_eq!((*name, most), ("samples", sampling.samples as f32));
             }
         }
+    }
+
+    /// Each effect is told when something that is used has it.
+    #[test]
+    fn effects_are_found() {
+        let plain = Scene::of_mesh(icosphere(0));
+        let all = [
+            Effect::Mirrors,
+            Effect::Glass,
+            Effect::AreaLights,
+            Effect::Gloss,
+            Effect::Lens,
+            Effect::Motion,
+        ];
+        let found = |change: &dyn Fn(&mut Scene)| {
+            let mut scene = plain.clone();
+            change(&mut scene);
+            all.into_iter().filter(|effect| effect.is_in(&scene)).collect::<Vec<_>>()
+        };
+        let ball = |material| SphereObject {
+            shape: Sphere { center: DVec3::ZERO, radius: 1.0 },
+            material: MaterialId(material),
+        };
+        let lens = |radius| Some(Lens { radius, focus: 1.0 });
+        let lamp = Material { emission: Rgb::ONE, ..Material::matte(Rgb::ZERO) };
+        assert_eq!(found(&|_| ()), []);
+        assert_eq!(found(&|scene| scene.materials[0].gloss = Some(9.0)), []);
+        let rough = found(&|scene| {
+            (scene.materials[0].gloss, scene.materials[0].k_t) = (Some(9.0), Rgb::ONE);
+        });
+        assert_eq!(rough, [Effect::Glass, Effect::Gloss]);
+        assert_eq!(found(&|scene| scene.materials.push(lamp)), []);
+        let lit = found(&|scene| {
+            scene.materials.push(lamp);
+            scene.spheres.push(ball(1));
+        });
+        assert_eq!(lit, [Effect::AreaLights]);
+        assert_eq!(found(&|scene| scene.camera.lens = lens(0.0)), []);
+        assert_eq!(found(&|scene| scene.camera.lens = lens(0.1)), [Effect::Lens]);
+        let moved = |displacement, spheres: Range<usize>| {
+            found(&|scene| {
+                scene.spheres.push(ball(0));
+                let parts = vec![Part::Spheres(spheres.clone())];
+                scene.motions.push(Motion { displacement, parts });
+            })
+        };
+        assert_eq!(moved(DVec3::X, 0..1), [Effect::Motion]);
+        assert_eq!((moved(DVec3::X, 0..0), moved(DVec3::ZERO, 0..1)), (vec![], vec![]));
     }
 
     const WORK_KINDS: [WorkKind; 3] = [WorkKind::Rays, WorkKind::Tests, WorkKind::SetOperations];

@@ -15,6 +15,9 @@ const POSITION: u32 = 7;
 const SPHERE: u32 = 12;
 /// Rounded operations of [`leave_surface`] itself.
 const LEAVING: u32 = 4;
+/// The same of a shift: of the point, of the ray's origin beside it, and of that origin back to where the scene has
+/// the surface.
+const SHIFT: u32 = 3;
 
 /// What a method renders: a scene and an index of its primitives.
 #[derive(Clone, Copy)]
@@ -140,6 +143,20 @@ fn smooth(
     }
 }
 
+impl SurfacePoint {
+    /// The same point of the surface where all of it is moved `by` so much.
+    #[inline]
+    #[must_use]
+    pub fn shifted(self, by: DVec3) -> Self {
+        Self {
+            position: self.position + by,
+            lifted: self.lifted + by,
+            error: self.error + gamma(SHIFT) * (self.position.abs() + by.abs()),
+            ..self
+        }
+    }
+}
+
 impl<V: Vector, M> SurfacePoint<V, M> {
     /// The unit shading normal on the side of the surface that `to_eye` points to.
     #[inline(always)]
@@ -158,13 +175,26 @@ impl<V: Vector, M> SurfacePoint<V, M> {
     /// The ray from the surface to `target`, which it reaches at t = 1.
     #[inline(always)]
     pub fn spawn_to(&self, target: V) -> Ray<V> {
-        // Seen from inside a smooth surface is hollow: its facets stand before it, not behind. Near the
-        // terminator the shading normal tells the side, since the facet has turned away already.
-        let cos = (target - self.position).dot(self.shading_normal);
-        let outwards = cos.all(0.0).below(cos);
-        let start = V::select(outwards, self.lifted, self.position);
+        let start = self.lit_from(target - self.position);
         let origin = leave_surface(start, self.error, self.geometric_normal, target - start);
         Ray::new(origin, target - origin)
+    }
+
+    /// The ray that leaves the surface in `direction` and looks for the same light as a shadow ray would: it starts
+    /// where that does.
+    #[inline(always)]
+    pub fn spawn_for_light(&self, direction: V) -> Ray<V> {
+        let start = self.lit_from(direction);
+        Ray::new(leave_surface(start, self.error, self.geometric_normal, direction), direction)
+    }
+
+    /// Where light from `direction` is looked for, up to the move that leaves the surface.
+    #[inline(always)]
+    pub fn lit_from(&self, direction: V) -> V {
+        // Seen from inside a smooth surface is hollow: its facets stand before it, not behind. Near the
+        // terminator the shading normal tells the side, since the facet has turned away already.
+        let cos = direction.dot(self.shading_normal);
+        V::select(cos.all(0.0).below(cos), self.lifted, self.position)
     }
 
     /// The unit normal that mirrors and refracts a ray arriving along `incident`, on the side it comes

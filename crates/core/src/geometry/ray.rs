@@ -25,6 +25,13 @@ impl Ray {
     pub fn at(&self, t: f64) -> DVec3 {
         self.origin + t * self.direction
     }
+
+    /// The ray of the same direction that starts `by` farther on.
+    #[inline]
+    #[must_use]
+    pub fn shifted(&self, by: DVec3) -> Self {
+        Self::new(self.origin + by, self.direction)
+    }
 }
 
 /// The open interval of ray parameters in which a hit counts: `min < t < max`.

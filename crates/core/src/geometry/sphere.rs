@@ -1,7 +1,7 @@
 use glam::DVec3;
 
 use super::real::{cross, dot};
-use super::{Interval, Ray, Real, gamma};
+use super::{Bounds3, Interval, Ray, Real, gamma};
 
 /// A sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,6 +13,12 @@ pub struct Sphere {
 }
 
 impl Sphere {
+    /// The smallest box around it, up to the rounding of its extent.
+    pub fn bounds(&self) -> Bounds3 {
+        let reach = DVec3::splat(self.radius);
+        Bounds3 { min: self.center - reach, max: self.center + reach }
+    }
+
     /// The smallest parameter in `range` at which the ray meets the sphere, from outside or inside.
     ///
     /// ```text

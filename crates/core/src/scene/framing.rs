@@ -4,7 +4,7 @@ use std::fmt;
 use glam::{DQuat, DVec3};
 
 use super::load::MAX_COORDINATE;
-use super::{Camera, PointLight};
+use super::{Camera, Lens, PointLight};
 use crate::Rgb;
 use crate::geometry::Sphere;
 
@@ -19,6 +19,10 @@ pub enum CameraError {
     UpAlongView,
     /// `fov` is not between 0 and 180 degrees.
     Fov,
+    /// The radius of the lens is NaN, negative or beyond [`MAX_COORDINATE`].
+    Lens,
+    /// The distance of the plane of focus is NaN, not positive, or so small or large that squared lengths overflow.
+    Focus,
 }
 
 impl CameraError {
@@ -32,6 +36,8 @@ impl CameraError {
                 ("up is zero or along the line of sight", "look another way or choose another `up`")
             }
             Self::Fov => ("fov is out of range", "it must be between 0 and 180 degrees"),
+            Self::Lens => ("lens is out of range", "its radius must be between 0 and 1e50"),
+            Self::Focus => ("focus is out of range", "the distance must be between 1e-50 and 1e50"),
         }
     }
 }
@@ -61,7 +67,7 @@ impl Camera {
         } else if across <= 1e-12 * view.length() * self.up.length() {
             Err(CameraError::UpAlongView)
         } else if self.fov > 0.0 && self.fov < 180.0 {
-            Ok(())
+            self.lens.map_or(Ok(()), Lens::check)
         } else {
             Err(CameraError::Fov)
         }
@@ -79,6 +85,7 @@ impl Camera {
             look_at: bounds.center,
             up: DVec3::Y,
             fov: FOV,
+            lens: None,
         }
     }
 
@@ -90,6 +97,18 @@ impl Camera {
         };
         let turn = DQuat::from_rotation_arc(from, to);
         Self { eye: self.look_at + turn * (self.eye - self.look_at), up, ..self }
+    }
+}
+
+impl Lens {
+    fn check(self) -> Result<(), CameraError> {
+        if !(0.0..=MAX_COORDINATE).contains(&self.radius) {
+            Err(CameraError::Lens)
+        } else if !(1.0 / MAX_COORDINATE..=MAX_COORDINATE).contains(&self.focus) {
+            Err(CameraError::Focus)
+        } else {
+            Ok(())
+        }
     }
 }
 
@@ -114,7 +133,7 @@ impl PointLight {
 mod tests {
     use super::*;
     use crate::image::ImageSize;
-    use glam::dvec3;
+    use glam::{DVec2, dvec3};
 
     #[test]
     fn a_framed_sphere_touches_the_pictures_edges() {
@@ -150,7 +169,10 @@ mod tests {
 
     #[test]
     fn cameras_without_a_picture_are_told() {
-        let good = Camera { eye: DVec3::Z, look_at: DVec3::ZERO, up: DVec3::Y, fov: 40.0 };
+        let lens = |radius, focus| Some(Lens { radius, focus });
+        let pinhole = lens(0.0, 3.0);
+        let good =
+            Camera { eye: DVec3::Z, look_at: DVec3::ZERO, up: DVec3::Y, fov: 40.0, lens: pinhole };
         assert_eq!(good.check(), Ok(()));
         let nan = Camera { eye: dvec3(0.0, f64::NAN, 0.0), ..good };
         assert_eq!(nan.check(), Err(CameraError::NotFinite));
@@ -163,6 +185,17 @@ mod tests {
         for fov in [0.0, -1.0, 180.0, f64::NAN, f64::INFINITY] {
             assert_eq!(Camera { fov, ..good }.check(), Err(CameraError::Fov));
         }
+        for radius in [-1e-9, f64::NAN, f64::INFINITY, 1.1e50] {
+            assert_eq!(Camera { lens: lens(radius, 3.0), ..good }.check(), Err(CameraError::Lens));
+        }
+        for focus in [0.0, -3.0, f64::NAN, f64::INFINITY, 1e-51, 1.1e50] {
+            assert_eq!(Camera { lens: lens(0.1, focus), ..good }.check(), Err(CameraError::Focus));
+        }
+        // The widest lens beside the nearest focus: the directions are still unit vectors.
+        let extreme = Camera { lens: lens(1e50, 1e-50), ..good };
+        assert_eq!(extreme.check(), Ok(()));
+        let ray = extreme.primary_rays(ImageSize::new(4, 4)).through_lens(DVec2::ONE, DVec2::X);
+        assert!((ray.direction.length() - 1.0).abs() < 1e-15, "{ray:?}");
     }
 
     #[test]

@@ -15,6 +15,7 @@ pub struct MaterialId(pub u32);
 /// | n     | `shininess`       | `eq:local`, the exponent of the highlight  |
 /// | k_s   | `k_s`             | `eq:recursion`, the share of the mirror ray |
 /// | k_t   | `k_t`             | `eq:recursion`, the share of the refracted ray |
+/// | m     | `gloss`           | how far the rays of k_s and k_t are spread |
 /// | n₂/n₁ | `refractive_index`| `eq:descartes`, inside the closed surface over what surrounds it |
 /// | ε     | `emission`        | added to what leaves the surface           |
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,10 +30,13 @@ pub struct Material {
     pub k_s: Rgb,
     /// Share of the refracted ray, per channel.
     pub k_t: Rgb,
+    /// Exponent m, above 0, of a rough surface: the rays of k_s and k_t are spread around R and T with the density
+    /// (m + 1)/(2π) cosᵐ of the angle to them (« brillance », « translucidité »); `None` is perfectly smooth.
+    pub gloss: Option<f64>,
     /// Refractive index of the inside, relative to what surrounds the surface: the outside is 1. Water (1.33) in
     /// glass (1.5) has 1.33/1.5.
     pub refractive_index: f64,
-    /// Radiance emitted from the outside. A face that emits is an area light.
+    /// Radiance emitted from the outside. A face or a sphere that emits is a lamp.
     pub emission: Rgb,
 }
 
@@ -45,6 +49,7 @@ impl Material {
             shininess: 1.0,
             k_s: Rgb::ZERO,
             k_t: Rgb::ZERO,
+            gloss: None,
             refractive_index: 1.0,
             emission: Rgb::ZERO,
         }
@@ -60,10 +65,11 @@ impl Material {
 
     /// Whether nothing of the surface is seen: it sends no light, and all light passes straight through it.
     pub fn is_invisible(&self) -> bool {
-        let Self { rho_d, rho_s, shininess: _, k_s, k_t, refractive_index, emission } = *self;
+        let Self { rho_d, rho_s, shininess: _, k_s, k_t, gloss, refractive_index, emission } =
+            *self;
         let sends_nothing =
             [rho_s, k_s, emission, rho_d.brightest()].iter().all(|c| *c == Rgb::ZERO);
-        sends_nothing && k_t == Rgb::ONE && refractive_index == 1.0
+        sends_nothing && k_t == Rgb::ONE && gloss.is_none() && refractive_index == 1.0
     }
 
     /// Whether light changes its direction where it passes the surface.
@@ -71,7 +77,12 @@ impl Material {
         self.k_t != Rgb::ZERO && self.refractive_index != 1.0
     }
 
-    /// Whether the material emits, so that a face of it is an area light.
+    /// Whether rays of k_s or k_t leave the surface spread.
+    pub fn is_glossy(&self) -> bool {
+        self.gloss.is_some() && (self.k_s != Rgb::ZERO || self.k_t != Rgb::ZERO)
+    }
+
+    /// Whether the material emits, so that a face or a sphere of it is a lamp.
     pub fn emits(&self) -> bool {
         self.emission != Rgb::ZERO
     }

@@ -9,14 +9,16 @@ mod light;
 pub mod load;
 mod material;
 mod mesh;
+mod motion;
 mod primitives;
 
-pub use camera::{Camera, PrimaryRays};
+pub use camera::{Camera, Lens, PrimaryRays};
 pub use counts::Counts;
 pub use framing::CameraError;
-pub use light::{AreaLight, PointLight, PointSource};
+pub use light::{AreaLight, Emitter, PointLight, PointSource, SphereLight};
 pub use material::{Material, MaterialId, Pigment};
 pub use mesh::{Face, FaceId, Mesh, Triangle};
+pub use motion::{Motion, Part};
 pub use primitives::{PrimitiveId, Shape, Subset};
 
 use glam::DVec3;
@@ -40,15 +42,17 @@ pub struct SphereObject {
 /// for them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// The pinhole camera.
+    /// The camera.
     pub camera: Camera,
     /// Every triangle of the scene.
     pub mesh: Mesh,
     /// Every sphere of the scene.
     pub spheres: Vec<SphereObject>,
+    /// What moves while the shutter is open; everything else stands still. No primitive is in two of them.
+    pub motions: Vec<Motion>,
     /// The materials that faces and spheres name by [`MaterialId`].
     pub materials: Vec<Material>,
-    /// Point lights. Area lights are the faces whose material emits.
+    /// Point lights. Faces and spheres whose material emits are lamps, too.
     pub lights: Vec<PointLight>,
     /// The ambient radiance I_a of `eq:ambient`.
     pub ambient: Rgb,
@@ -60,9 +64,16 @@ impl Scene {
     /// A grey matte mesh without light, seen from the point one unit before the origin.
     pub fn of_mesh(mesh: Mesh) -> Self {
         Self {
-            camera: Camera { eye: DVec3::Z, look_at: DVec3::ZERO, up: DVec3::Y, fov: 40.0 },
+            camera: Camera {
+                eye: DVec3::Z,
+                look_at: DVec3::ZERO,
+                up: DVec3::Y,
+                fov: 40.0,
+                lens: None,
+            },
             mesh,
             spheres: Vec::new(),
+            motions: Vec::new(),
             materials: vec![Material::matte(Rgb::splat(0.5))],
             lights: Vec::new(),
             ambient: Rgb::ZERO,

@@ -1,7 +1,5 @@
 //! A scene's primitives: how they are numbered, what they are, and sets of them.
 
-use glam::DVec3;
-
 use super::Scene;
 use super::counts::{Counts, is_zero_area};
 use crate::geometry::{Bounds3, ConvexVolume, Sphere};
@@ -38,11 +36,7 @@ impl Scene {
     pub fn primitive_bounds(&self, primitive: PrimitiveId) -> Bounds3 {
         match self.shape(primitive) {
             Shape::Triangle(index) => Bounds3::of_points(self.mesh.corners(index)),
-            Shape::Sphere(index) => {
-                let sphere = self.spheres[index].shape;
-                let reach = DVec3::splat(sphere.radius);
-                Bounds3 { min: sphere.center - reach, max: sphere.center + reach }
-            }
+            Shape::Sphere(index) => self.spheres[index].shape.bounds(),
         }
     }
 

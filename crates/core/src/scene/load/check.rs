@@ -14,6 +14,8 @@ pub(super) enum Range {
     Share,
     NotNegative,
     Positive,
+    /// Exponents of gloss.
+    Gloss,
     /// Radiances and intensities: not negative, up to [`MAX_RADIANCE`].
     Radiance,
     /// Refractive indices: those that the MTL specification has, and their reciprocals. Beyond, the
@@ -29,6 +31,9 @@ pub(super) fn in_range(name: &str, value: f64, range: Range) -> Result<f64, Prob
         Range::Share => ((0.0..=1.0).contains(&value), "it must be between 0 and 1"),
         Range::NotNegative => (value >= 0.0, "it must be finite and not negative"),
         Range::Positive => (value > 0.0, "it must be finite and positive"),
+        Range::Gloss => {
+            (value > 0.0, "it must be finite and positive; leave it out for a smooth surface")
+        }
         Range::Radiance => ((0.0..=MAX_RADIANCE).contains(&value), "it must be between 0 and 1e30"),
         Range::Index => ((1e-3..=1e3).contains(&value), "it must be between 0.001 and 1000"),
         Range::Illum => (

@@ -129,6 +129,7 @@ impl Definition {
             shininess: exponent(value(&self.ns, 0.0, shines && ks != Rgb::ZERO)?),
             k_s: if mirrors { kept * ks } else { Rgb::ZERO },
             k_t: if refracts { (Rgb::ONE - ks) * tf } else { (1.0 - opacity) * tf },
+            gloss: None,
             refractive_index: if refracts { value(&self.ni, 1.0, true)? } else { 1.0 },
             emission: value(&self.ke, Rgb::ZERO, true)?,
         })

@@ -185,7 +185,7 @@ fn load_obj(path: &Path, open: Open<'_>) -> Result<Loaded, LoadError> {
     scene.ambient = Rgb::splat(0.05);
     scene.background = Rgb::new(0.2, 0.25, 0.3);
     frame(&mut scene, &path.display().to_string())?;
-    let headlight = !scene.has_area_light();
+    let headlight = !scene.has_lamp();
     if headlight {
         scene.lights.push(PointLight::beside(&scene.camera));
     }
@@ -196,9 +196,10 @@ fn load_obj(path: &Path, open: Open<'_>) -> Result<Loaded, LoadError> {
 /// A scene to be filled; its camera has no meaning yet.
 fn empty_scene() -> Scene {
     Scene {
-        camera: Camera { eye: DVec3::Z, look_at: DVec3::ZERO, up: DVec3::Y, fov: 40.0 },
+        camera: Camera { eye: DVec3::Z, look_at: DVec3::ZERO, up: DVec3::Y, fov: 40.0, lens: None },
         mesh: Mesh::default(),
         spheres: Vec::new(),
+        motions: Vec::new(),
         materials: Vec::new(),
         lights: Vec::new(),
         ambient: Rgb::ZERO,

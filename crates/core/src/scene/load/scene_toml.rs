@@ -1,3 +1,4 @@
+use std::collections::HashMap;
 use std::ops::Range as Span;
 use std::path::Path;
 
@@ -13,11 +14,11 @@ use super::{
     Loaded, MAX_COORDINATE, MAX_CORNERS, MAX_COUNT, Open, empty_scene, finish, frame, obj,
 };
 use crate::Rgb;
-use crate::geometry::Sphere;
-use crate::geometry::triangulate;
+use crate::geometry::{Bounds3, Sphere, triangulate};
 use crate::scene::counts::is_zero_area;
 use crate::scene::{
-    Camera, CameraError, Material, MaterialId, Mesh, Pigment, PointLight, Scene, SphereObject,
+    Camera, CameraError, Lens, Material, MaterialId, Mesh, Motion, Part, Pigment, PointLight,
+    Scene, SphereObject,
 };
 
 /// See [`super::parse_scene`].
@@ -47,17 +48,30 @@ pub(super) fn parse(
         let material = source.material_id(&names, &table.material)?;
         source.add_polygon(&mut scene.mesh, &table.vertices, material)?;
     }
+    let mut motions = Motions::default();
     for table in &file.mesh {
         let material =
             table.material.as_ref().map(|name| source.material_id(&names, name)).transpose()?;
+        let first = scene.mesh.triangles.len();
         let added = source.add_mesh(&mut scene, table, material, folder, open, &mut warnings)?;
         material_names.extend(added);
+        if let Some(displacement) = &table.displacement {
+            let triangles = first..scene.mesh.triangles.len();
+            let bounds = Bounds3::of_points(triangles.clone().flat_map(|k| scene.mesh.corners(k)));
+            motions.going(source.way(displacement, bounds)?).parts.push(Part::Triangles(triangles));
+        }
     }
     for table in &file.sphere {
         let material = source.material_id(&names, &table.material)?;
-        let sphere = source.sphere(table, scene.materials[material.0 as usize], material)?;
+        let sphere = source.sphere(table, material)?;
+        let index = scene.spheres.len();
         scene.spheres.push(sphere);
+        if let Some(displacement) = &table.displacement {
+            let way = source.way(displacement, sphere.shape.bounds())?;
+            motions.going(way).parts.push(Part::Spheres(index..index + 1));
+        }
     }
+    scene.motions = motions.list;
     if scene.mesh.triangles.is_empty() && scene.spheres.is_empty() {
         let cure = "add a [[sphere]], [[mesh]] or [[polygon]]";
         return Err(LoadError::at(name, None, "nothing to draw", cure));
@@ -70,6 +84,24 @@ pub(super) fn parse(
         warnings.add(name, None, WarningKind::NoLight);
     }
     Ok(finish(name, scene, material_names, warnings))
+}
+
+/// Motions as they are found: what goes the same way moves together.
+#[derive(Default)]
+struct Motions {
+    list: Vec<Motion>,
+    known: HashMap<[u64; 3], usize>,
+}
+
+impl Motions {
+    fn going(&mut self, displacement: DVec3) -> &mut Motion {
+        let Self { list, known } = self;
+        let index = *known.entry(displacement.to_array().map(f64::to_bits)).or_insert(list.len());
+        if index == list.len() {
+            list.push(Motion { displacement, ..Motion::default() });
+        }
+        &mut list[index]
+    }
 }
 
 /// The text of a scene file, to name lines in it.
@@ -140,6 +172,7 @@ impl Source<'_> {
             look_at: self.point("look_at", &table.look_at)?,
             up: table.up.as_ref().map_or(Ok(DVec3::Y), |up| self.point("up", up))?,
             fov: *table.fov.get_ref(),
+            lens: self.lens(table)?,
         };
         camera.check().map_err(|error| {
             let span = match error {
@@ -148,10 +181,29 @@ impl Source<'_> {
                     table.up.as_ref().map_or(table.look_at.span(), Spanned::span)
                 }
                 CameraError::Fov => table.fov.span(),
+                CameraError::Lens => table.lens.as_ref().map_or(table.fov.span(), Spanned::span),
+                CameraError::Focus => table.focus.as_ref().map_or(table.fov.span(), Spanned::span),
             };
             self.error(span, error.problem_and_cure())
         })?;
         Ok(camera)
+    }
+
+    fn lens(&self, table: &CameraTable) -> Result<Option<Lens>, LoadError> {
+        match (&table.lens, &table.focus) {
+            (None, None) => Ok(None),
+            (Some(radius), Some(focus)) => {
+                Ok(Some(Lens { radius: *radius.get_ref(), focus: *focus.get_ref() }))
+            }
+            (Some(radius), None) => {
+                let cure = "add `focus`, the distance of what is sharp along the view axis";
+                Err(self.error(radius.span(), ("a lens without focus", cure)))
+            }
+            (None, Some(focus)) => {
+                let cure = "add `lens`, its radius; without one everything is sharp";
+                Err(self.error(focus.span(), ("a focus without lens", cure)))
+            }
+        }
     }
 
     fn material(&self, table: &MaterialTable) -> Result<Material, LoadError> {
@@ -168,6 +220,11 @@ impl Source<'_> {
             shininess: number("shininess", &table.shininess, Range::NotNegative)?,
             k_s: share("k_s", &table.k_s)?,
             k_t: share("k_t", &table.k_t)?,
+            gloss: table
+                .gloss
+                .as_ref()
+                .map(|value| self.number("gloss", value, Range::Gloss))
+                .transpose()?,
             refractive_index: number("refractive_index", &table.refractive_index, Range::Index)?,
             emission: self.color_or_black("emission", &table.emission, Range::Radiance)?,
         })
@@ -182,22 +239,24 @@ impl Source<'_> {
         })
     }
 
-    fn sphere(
-        &self,
-        table: &SphereTable,
-        material: Material,
-        id: MaterialId,
-    ) -> Result<SphereObject, LoadError> {
-        if material.emits() {
-            let problem = "a sphere cannot emit: area lights are faces";
-            let cure = "use a [[polygon]] for the light, or a material without emission";
-            return Err(self.error(table.material.span(), (problem, cure)));
-        }
+    fn sphere(&self, table: &SphereTable, id: MaterialId) -> Result<SphereObject, LoadError> {
         let center = self.point("center", &table.center)?;
         let radius = self.number("radius", &table.radius, Range::Positive)?;
         check_point("center + radius", center + radius)
             .map_err(|problem| self.error(table.radius.span(), problem))?;
         Ok(SphereObject { shape: Sphere { center, radius }, material: id })
+    }
+
+    /// The way that what is in `bounds` goes.
+    fn way(&self, move_: &Spanned<[f64; 3]>, bounds: Bounds3) -> Result<DVec3, LoadError> {
+        let way = self.point("move", move_)?;
+        if !bounds.is_empty() {
+            for corner in [bounds.min, bounds.max] {
+                check_point("the place after the move", corner + way)
+                    .map_err(|problem| self.error(move_.span(), problem))?;
+            }
+        }
+        Ok(way)
     }
 
     fn add_polygon(

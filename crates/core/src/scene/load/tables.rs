@@ -31,6 +31,8 @@ pub(super) struct CameraTable {
     pub look_at: Spanned<[f64; 3]>,
     pub up: Option<Spanned<[f64; 3]>>,
     pub fov: Spanned<f64>,
+    pub lens: Option<Spanned<f64>>,
+    pub focus: Option<Spanned<f64>>,
 }
 
 #[derive(Deserialize)]
@@ -48,6 +50,7 @@ pub(super) struct MaterialTable {
     pub shininess: Option<Spanned<f64>>,
     pub k_s: Option<Spanned<Triple>>,
     pub k_t: Option<Spanned<Triple>>,
+    pub gloss: Option<Spanned<f64>>,
     pub refractive_index: Option<Spanned<f64>>,
     pub emission: Option<Spanned<Triple>>,
 }
@@ -58,6 +61,8 @@ pub(super) struct SphereTable {
     pub center: Spanned<[f64; 3]>,
     pub radius: Spanned<f64>,
     pub material: Spanned<String>,
+    #[serde(rename = "move")]
+    pub displacement: Option<Spanned<[f64; 3]>>,
 }
 
 #[derive(Deserialize)]
@@ -68,6 +73,8 @@ pub(super) struct MeshTable {
     pub scale: Option<Spanned<Triple>>,
     pub rotate: Option<Spanned<[f64; 3]>>,
     pub translate: Option<Spanned<[f64; 3]>>,
+    #[serde(rename = "move")]
+    pub displacement: Option<Spanned<[f64; 3]>>,
 }
 
 #[derive(Deserialize)]

@@ -68,6 +68,18 @@ fn many_and_long_names_are_found() {
     }
     let scene = |text: &str| load_from(&[("s.toml", text.as_bytes())], "s.toml");
     assert_eq!(scene(&text).expect("fine").scene.spheres.len(), 20_000);
+    // As many ways to go.
+    let moving = text.replace("center = [", "move = [1, 2, 3]\ncenter = [");
+    assert_eq!(scene(&moving).expect("fine").scene.motions.len(), 1);
+    let moving: String = text
+        .lines()
+        .enumerate()
+        .map(|(i, line)| match line {
+            "radius = 1" => format!("radius = 1\nmove = [0, {i}, 0]\n"),
+            _ => format!("{line}\n"),
+        })
+        .collect();
+    assert_eq!(scene(&moving).expect("fine").scene.motions.len(), 20_000);
     let last = text.replace("'m19999'", "'m1999x'");
     assert_refused(
         scene(&last),

@@ -2,7 +2,7 @@ use glam::dvec3;
 
 use super::*;
 use crate::geometry::Sphere;
-use crate::scene::{FaceId, Material, MaterialId, Pigment};
+use crate::scene::{FaceId, Lens, Material, MaterialId, Part, Pigment, PrimitiveId};
 
 /// Every key of the format.
 const EVERYTHING: &str = include_str!("../format.toml");
@@ -23,7 +23,7 @@ fn every_key_reaches_the_scene() {
     let loaded = scene(EVERYTHING).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(warnings(&loaded), [""; 0]);
     let counts =
-        crate::scene::Counts { vertices: 13, faces: 4, triangles: 5, zero_area: 0, spheres: 1 };
+        crate::scene::Counts { vertices: 13, faces: 4, triangles: 5, zero_area: 0, spheres: 2 };
     assert_eq!(loaded.scene.counts(), counts);
     let scene = loaded.scene;
     let camera = Camera {
@@ -31,6 +31,7 @@ fn every_key_reaches_the_scene() {
         look_at: DVec3::Y,
         up: dvec3(0.0, 2.0, 0.0),
         fov: 45.0,
+        lens: Some(Lens { radius: 0.05, focus: 4.5 }),
     };
     assert_eq!(scene.camera, camera);
     assert_eq!((scene.ambient, scene.background), (Rgb::splat(0.1), Rgb::new(0.2, 0.3, 0.4)));
@@ -56,6 +57,7 @@ fn every_key_reaches_the_scene() {
             shininess: 80.0,
             k_s: Rgb::splat(0.1),
             k_t: Rgb::new(0.8, 0.7, 0.6),
+            gloss: Some(300.0),
             refractive_index: 1.5,
             emission: Rgb::ZERO,
         },
@@ -66,6 +68,19 @@ fn every_key_reaches_the_scene() {
     assert_eq!(scene.mesh.faces.iter().map(|f| f.material.0).collect::<Vec<_>>(), [0, 2, 0, 3]);
     assert_eq!(scene.spheres[0].shape.center, DVec3::Y);
     assert_eq!((scene.spheres[0].shape.radius, scene.spheres[0].material), (1.0, MaterialId(1)));
+    let lamps = scene.sphere_lights();
+    let lamp = Sphere { center: dvec3(2.0, 3.0, 0.0), radius: 0.5 };
+    assert_eq!((lamps.len(), lamps[0].sphere, lamps[0].shape), (1, 1, lamp));
+    // The triangles 0 to 2 are those of the polygons.
+    let [mesh, ball] = &scene.motions[..] else { panic!("two motions: {:?}", scene.motions) };
+    assert_eq!(
+        (mesh.displacement, ball.displacement),
+        (dvec3(0.0, 0.75, 0.0), dvec3(0.25, 0.0, 0.125))
+    );
+    assert_eq!(
+        (&mesh.parts[..], &ball.parts[..]),
+        (&[Part::Triangles(3..4)][..], &[Part::Spheres(0..1)][..])
+    );
     assert_eq!(scene.mesh.triangles.iter().filter(|t| t.face == FaceId(0)).count(), 2);
     assert!((area(&scene.mesh) - (16.0 + 0.5 + 1.5 + 0.75_f64.sqrt())).abs() < 1e-12);
 
@@ -101,6 +116,9 @@ fn assert_line_refused(good: &str, bad: &str, problem_and_cure: &str) {
 #[test]
 fn bad_values_are_refused_with_their_line() {
     let share = "it must be between 0 and 1";
+    let lens = "its radius must be between 0 and 1e50";
+    let focus = "the distance must be between 1e-50 and 1e50";
+    let gloss = "it must be finite and positive; leave it out for a smooth surface";
     let finite = "coordinates must be finite and below 1e50";
     let positive = "it must be finite and positive";
     let radiance = "it must be between 0 and 1e30";
@@ -205,11 +223,28 @@ fn bad_values_are_refused_with_their_line() {
             "the polygon is not planar",
             "split it into triangles",
         ),
+        ("lens = 0.05", "lens = -0.05", "lens is out of range", lens),
+        ("lens = 0.05", "lens = nan", "lens is out of range", lens),
+        ("lens = 0.05", "lens = 1e51", "lens is out of range", lens),
+        ("focus = 4.5", "focus = 0", "focus is out of range", focus),
+        ("focus = 4.5", "focus = -4.5", "focus is out of range", focus),
+        ("focus = 4.5", "focus = nan", "focus is out of range", focus),
+        ("gloss = 300", "gloss = 0", "gloss is 0.0", gloss),
+        ("gloss = 300", "gloss = -1", "gloss is -1.0", gloss),
+        ("gloss = 300", "gloss = inf", "gloss is inf", gloss),
+        ("move = [0, 0.75, 0]", "move = [0, nan, 0]", "move is [0.0, NaN, 0.0]", finite),
+        ("move = [0, 0.75, 0]", "move = [0, 1e51, 0]", "move is [0.0, 1e51, 0.0]", finite),
         (
-            "material = 'glass'",
-            "material = 'lamp'",
-            "a sphere cannot emit: area lights are faces",
-            "use a [[polygon]] for the light, or a material without emission",
+            "move = [0, 0.75, 0]",
+            "move = 1",
+            "invalid type: integer `1`, expected an array of length 3",
+            syntax,
+        ),
+        (
+            "material = 'floor'",
+            "move = [1, 0, 0]\nmaterial = 'floor'",
+            "unknown field `move`, expected `vertices` or `material`",
+            "the known ones are material, vertices",
         ),
         (
             "material = 'glass'",
@@ -221,7 +256,7 @@ fn bad_values_are_refused_with_their_line() {
             "scale = -1",
             "scales = -1",
             "unknown field `scales`",
-            "the known ones are scale, rotate, obj, material, translate",
+            "the known ones are scale, rotate, move, obj, material, translate",
         ),
         (
             "[material.lamp]",
@@ -270,6 +305,62 @@ fn text_that_is_not_utf_8_is_refused_with_its_line() {
         load_from(&[("s.toml", text)], "s.toml"),
         "s.toml:2: the text is not UTF-8; save the file as UTF-8",
     );
+}
+
+/// A lens and its focus belong together; the one that is there is named.
+#[test]
+fn a_lens_has_a_focus() {
+    let camera = |keys: &str| {
+        scene(format!("[camera]\neye = [0, 0, 1]\nlook_at = [0, 0, 0]\nfov = 40\n{keys}\n{BALL}"))
+    };
+    assert_refused(
+        camera("lens = 0.1"),
+        "scenes/s.toml:5: a lens without focus; \
+         add `focus`, the distance of what is sharp along the view axis",
+    );
+    assert_refused(
+        camera("focus = 2"),
+        "scenes/s.toml:5: a focus without lens; \
+         add `lens`, its radius; without one everything is sharp",
+    );
+    let lens = |keys: &str| camera(keys).expect("fine").scene.camera.lens;
+    assert_eq!(lens(""), None);
+    assert_eq!(lens("focus = 2\nlens = 0"), Some(Lens { radius: 0.0, focus: 2.0 }));
+}
+
+/// What moves stays where coordinates are.
+#[test]
+fn moves_end_in_space() {
+    let far = BALL.replace("center = [0, 0, 0]", "center = [9e49, 0, 0]\nmove = [9e49, 0, 0]");
+    assert_refused(
+        scene(far),
+        "scenes/s.toml:8: the place after the move is [1.8e50, -1.0, -1.0]; \
+         coordinates must be finite and below 1e50",
+    );
+}
+
+const BALL: &str = "[[light]]\nposition = [0, 9, 0]\nintensity = 9\n[material.m]\nrho_d = 1\n\
+                    [[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'm'\n";
+
+/// What goes the same way moves together; what goes nowhere stands still.
+#[test]
+fn moves_are_gathered() {
+    let ball = |way: &str| {
+        let ball = BALL.split_once("[[sphere]]").expect("a sphere").1;
+        format!("[[sphere]]{ball}{way}\n")
+    };
+    let text = format!(
+        "{BALL}{}{}{}{}",
+        ball("move = [1, 0, 0]"),
+        ball("move = [0, 0, 0]"),
+        ball("move = [0, 1, 0]"),
+        ball("move = [1, 0, 0]"),
+    );
+    let scene = scene(&text).expect("fine").scene;
+    let seen: Vec<_> = scene.moving().map(|(way, ids)| (way, ids.iter().collect())).collect();
+    let ids = |numbers: &[u32]| numbers.iter().map(|&id| PrimitiveId(id)).collect::<Vec<_>>();
+    assert_eq!(seen, [(DVec3::X, ids(&[1, 4])), (DVec3::Y, ids(&[3]))]);
+    assert_eq!(scene.still().iter().collect::<Vec<_>>(), ids(&[0, 2]));
 }
 
 #[test]
