@@ -4,9 +4,12 @@
 use std::fs;
 use std::path::Path;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use lancer_accel::ObvhsBvh2;
+use lancer_core::geometry::Interval;
 use lancer_core::image::{self, Image, ImageSize, save};
+use lancer_core::intersector::Intersector;
+use lancer_core::moving::{Moment, Moving};
 use lancer_core::render::{Control, render_pixels};
 use lancer_core::sampling::{Pattern, PixelSampling, Sample};
 use lancer_core::scene::Scene;
@@ -26,12 +29,13 @@ const MTL: &[u8] = b"newmtl red\nKa 1 1 1\nKd 1 0.5 0\nKs .2 .2 .2\nNs 10\nillum
     newmtl glass\nNi 1.5\nd 0.25\nTr .75\nTf 1 1 .5\nillum 7\nKe 0 0 0\n\
     newmtl lamp\nKe 5 4 3\nillum 3\nKs .5\n";
 const TOML: &[u8] = b"ambient = 0.1\nbackground = [0, 0.5, 1]\n[camera]\neye = [0, 1, 5]\n\
-    look_at = [0, 0, 0]\nfov = 40\n[[light]]\nposition = [1, 2, 3]\nintensity = 9\n\
+    look_at = [0, 0, 0]\nfov = 40\nlens = 0.1\nfocus = 4\n[[light]]\nposition = [1, 2, 3]\nintensity = 9\n\
     [material.a]\nrho_d = { checker = [0.5, [1, 0, 1]], side = 2.5 }\nk_t = 0.1\nrho_s = 0.5\n\
-    shininess = 20\nrefractive_index = 1.5\n[material.b]\nemission = 3\n\
-    [[sphere]]\ncenter = [0, 0, 0]\nradius = 1.5\nmaterial = 'a'\n\
+    shininess = 20\ngloss = 50\nrefractive_index = 1.5\n[material.b]\nemission = 3\n\
+    [[sphere]]\ncenter = [0, 0, 0]\nradius = 1.5\nmaterial = 'a'\nmove = [0, 1, 0]\n\
+    [[sphere]]\ncenter = [2, 3, 0]\nradius = 0.5\nmaterial = 'b'\n\
     [[polygon]]\nvertices = [[0, 0, 0], [1, 0, 0], [1, 1, 0]]\nmaterial = 'b'\n\
-    [[mesh]]\nobj = 'a.obj'\nscale = 2\nrotate = [0, 90, 0]\ntranslate = [0, 0, 1]\n";
+    [[mesh]]\nobj = 'a.obj'\nscale = 2\nrotate = [0, 90, 0]\ntranslate = [0, 0, 1]\nmove = [0.5, 0, 0]\n";
 
 const NAMES: [&str; 3] = ["a.obj", "a.mtl", "s.toml"];
 const CONTENTS: [&[u8]; 3] = [OBJ, MTL, TOML];
@@ -123,8 +127,13 @@ fn assert_sound(scene: &Scene) {
         assert!(colors.iter().all(|c| c.cmpge(DVec3::ZERO).all() && c.cmple(DVec3::ONE).all()));
         assert!(material.emission.is_finite() && material.shininess.is_finite());
         assert!(material.refractive_index.is_finite() && material.refractive_index > 0.0);
+        assert!(material.gloss.is_none_or(|gloss| gloss.is_finite() && gloss > 0.0));
     }
     assert_eq!(scene.camera.check(), Ok(()));
+    // Gathers what moves, which panics if it is not there.
+    let moving: usize = scene.moving().map(|(_, primitives)| primitives.len()).sum();
+    assert_eq!(moving + scene.still().len(), scene.primitives().len());
+    assert!(scene.motions.iter().all(|motion| motion.displacement.is_finite()));
     assert!(scene.ambient.is_finite() && scene.background.is_finite());
     for light in &scene.lights {
         assert!(light.position.is_finite() && light.intensity.is_finite());
@@ -137,7 +146,13 @@ fn picture(scene: &Scene) -> Image {
     let size = ImageSize::new(8, 8);
     let rays = scene.camera.primary_rays(size);
     let sampling = PixelSampling { pattern: Pattern::Regular, samples: 1, seed: 0 };
+    let moving = Moving::new(scene, &|primitives| Box::new(ObvhsBvh2::build(primitives)));
     let radiance = |sample: &Sample, counts: &mut RayCounts| {
+        let ray = rays.through_lens(sample.film, DVec2::new(-0.6, 0.8));
+        let moment = Moment::from(&moving).at(0.75);
+        if let Some(hit) = moment.closest_hit(&ray, Interval::POSITIVE) {
+            assert!(moment.surface_at(&ray, &hit).position.is_finite());
+        }
         method.trace(&rays.through(sample.film.x, sample.film.y), counts)
     };
     render_pixels(size, sampling, Control::default(), radiance).unwrap().image

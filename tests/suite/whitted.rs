@@ -5,11 +5,11 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use lancer_core::Rgb;
 use lancer_core::geometry::{Ray, Sphere};
-use lancer_core::illumination::{Arriving, Reflectance, ambient, attenuation, lit};
+use lancer_core::illumination::{Arriving, Reflectance, ambient, attenuation, lit, recursion};
 use lancer_core::intersector::LinearScan;
-use lancer_core::scene::{Material, MaterialId, Mesh, PointLight, Scene, SphereObject};
+use lancer_core::scene::{Emitter, Material, MaterialId, Mesh, PointLight, Scene, SphereObject};
 use lancer_core::world::World;
-use lancer_whitted::{Appel, AtLimit, RayCounts, RayEnd, RayTree, Settings, Whitted, recursion};
+use lancer_whitted::{Appel, AtLimit, RayCounts, RayEnd, RayTree, Settings, Whitted};
 
 const UNLIMITED: Settings = Settings { max_depth: 5, min_weight: 0.0, at_limit: AtLimit::Black };
 
@@ -331,7 +331,7 @@ fn lamps_do_not_shade_themselves() {
                 &[[first, first + 1, first + 2], [first, first + 2, first + 3]],
             );
             let lamp = scene.point_sources()[0];
-            let facing = lamp.facing.unwrap();
+            let Emitter::Face { normal: facing } = lamp.emitter else { panic!("a face") };
             let turned_to = if facing.dot(n) > 0.0 { 1.0 } else { -1.0 };
             let mut random = crate::random::Random::new(71);
             for _ in 0..2_000 {
@@ -410,4 +410,87 @@ fn lamps_shine_on_one_side() {
     scene.materials[0] = Material { emission: Rgb::ONE, ..Material::matte(Rgb::ZERO) };
     let look = |y: f64| trace(&scene, UNLIMITED, Ray::new(DVec3::Y * y, -DVec3::Y * y.signum())).0;
     assert_eq!((look(1.0), look(-1.0)), (Rgb::ONE, Rgb::ZERO));
+}
+
+/// The sphere of radius `radius` and radiance 1 around `center`, over a white floor at y = 0.
+fn under_a_sphere(center: DVec3, radius: f64) -> Scene {
+    let mut scene = Scene::of_mesh(Mesh::default());
+    plate(&mut scene, 0.0, 1.0, 0);
+    let lamp = Material { emission: Rgb::ONE, ..Material::matte(Rgb::ZERO) };
+    scene.materials = vec![Material::matte(Rgb::ONE), lamp];
+    scene.spheres.push(SphereObject { shape: Sphere { center, radius }, material: MaterialId(1) });
+    scene
+}
+
+/// The irradiance E = π r² cos / d² of a sphere that is above the horizon, over π; tables have 1.3962634015955 at d = 1.5,
+/// 0.34906585039887 at 3 and 3.1415926535898e-16 at 1e8. The floor is 1000 wide.
+#[test]
+fn a_sphere_is_a_point_at_its_centre() {
+    let look = |scene: &Scene, x: f64| {
+        trace(scene, UNLIMITED, Ray::new(DVec3::new(x, 0.25, 0.0), DVec3::NEG_Y))
+    };
+    for (distance, irradiance) in [(1.5, 1.3962634015955), (3.0, 0.34906585039887)] {
+        let scene = under_a_sphere(DVec3::Y * distance, 1.0);
+        let (below, counts) = look(&scene, 0.0);
+        assert!((below.x * PI - irradiance).abs() < 1e-12, "{below}");
+        assert_eq!(counts.shadow, 1);
+        // 45 degrees aside: twice the square of the distance, and the cosine √½.
+        let (aside, _) = look(&scene, distance);
+        assert!((aside.x * PI - irradiance * 0.5_f64.powf(1.5)).abs() < 1e-12, "{aside}");
+    }
+    // As small and as large as can be.
+    for (radius, distance) in [(1e-6, 3.0), (1e-6, 1.1e-6), (100.0, 101.0), (1e8, 1.5e8)] {
+        let scene = under_a_sphere(DVec3::Y * distance, radius);
+        let eye = DVec3::Y * (0.5 * (distance - radius));
+        let (below, _) = trace(&scene, UNLIMITED, Ray::new(eye, DVec3::NEG_Y));
+        let wanted = (radius / distance).powi(2);
+        assert!((below.x / wanted - 1.0).abs() < 1e-6, "{radius} {distance}: {below}");
+    }
+}
+
+/// What is in a sphere neither shades the floor nor is lit; what is before it does.
+#[test]
+fn shadow_rays_end_where_they_enter_a_sphere() {
+    let ball = |y: f64| SphereObject {
+        shape: Sphere { center: DVec3::Y * y, radius: 0.125 },
+        material: MaterialId(0),
+    };
+    for (y, is_lit) in [(3.0, true), (2.13, true), (1.87, false), (1.0, false), (4.2, true)] {
+        let mut scene = under_a_sphere(DVec3::Y * 3.0, 1.0);
+        scene.spheres.push(ball(y));
+        let (floor, _) =
+            trace(&scene, UNLIMITED, Ray::new(DVec3::new(0.0, 0.25, 0.0), DVec3::NEG_Y));
+        assert_eq!(floor.x > 0.0, is_lit, "a ball at {y}: {floor}");
+        // From every side, and from inside the lamp.
+        for direction in [DVec3::NEG_Y, DVec3::Y, DVec3::new(0.8, 0.6, 0.0)] {
+            let start = DVec3::Y * y - 0.25 * direction;
+            let (found, _) = trace(&scene, UNLIMITED, Ray::new(start, direction));
+            let inside = (y - 3.0_f64).abs() + 0.25 <= 1.0;
+            assert!(found.is_finite() && (!inside || found == Rgb::ZERO), "{y}: {found}");
+        }
+    }
+    // At its very centre, where there is no direction to the source.
+    let mut scene = under_a_sphere(DVec3::Y * 3.0, 1.0);
+    let first = scene.mesh.positions.len() as u32;
+    scene.mesh.positions.extend([DVec3::new(-0.5, 3.0, -0.5), DVec3::new(0.5, 3.0, -0.5)]);
+    scene.mesh.positions.push(DVec3::new(0.0, 3.0, 0.5));
+    scene.mesh.push_face(MaterialId(0), &[[first, first + 2, first + 1]]);
+    for direction in [DVec3::NEG_Y, DVec3::Y] {
+        let (found, _) =
+            trace(&scene, UNLIMITED, Ray::new(DVec3::Y * 3.0 - 0.5 * direction, direction));
+        assert_eq!(found, Rgb::ZERO);
+    }
+    // The eye in it sees nothing of its light.
+    let inside = under_a_sphere(DVec3::Y * 3.0, 1.0);
+    assert_eq!(trace(&inside, UNLIMITED, Ray::new(DVec3::Y * 3.0, DVec3::X)).0, Rgb::ZERO);
+    // Lying on the floor it lights all of it, down to the point where they touch.
+    let touching = under_a_sphere(DVec3::Y, 1.0);
+    for x in [0.0, 1e-12, 1e-9, 1e-6, 1e-3, 0.1] {
+        let ray =
+            Ray::new(DVec3::new(x + 1.0, 1e-4, 0.0), DVec3::new(-1.0, -1e-4, 0.0).normalize());
+        let found = trace(&touching, UNLIMITED, ray).0;
+        let lit = Rgb::splat((1.0 + x * x).powf(-1.5));
+        assert!((found - lit).abs().max_element() < 1e-3 || found == Rgb::ZERO, "{x}: {found}");
+        assert!(found != Rgb::ZERO || x < 1e-6, "{x}");
+    }
 }

@@ -7,7 +7,8 @@ use lancer_lesson::chapter::Walkthrough;
 use lancer_lesson::scenes::{NamedScene, Source};
 
 /// All chapters, in the slides' order.
-pub static CHAPTERS: [&Chapter; 2] = [&chapter_1::CHAPTER, &chapter_4::CHAPTER];
+pub static CHAPTERS: [&Chapter; 3] =
+    [&chapter_1::CHAPTER, &chapter_3::CHAPTER, &chapter_4::CHAPTER];
 
 /// All figures, each with its chapter.
 pub fn figures() -> impl Iterator<Item = (&'static Chapter, &'static Figure)> {

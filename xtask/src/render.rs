@@ -9,7 +9,7 @@ use lancer_accel::structures::Structure;
 use lancer_core::Rgb;
 use lancer_core::image::{Image, ImageSize, check_target, save};
 use lancer_core::method::{
-    BuildIndex, ByProduct, Effect, Method, Order, Outcome, Setting, WorkKind,
+    Branching, BuildIndex, ByProduct, Effect, Method, Order, Outcome, Setting, Strategy, WorkKind,
 };
 use lancer_core::render::Control;
 use lancer_core::sampling::{Pattern, PixelSampling};
@@ -46,10 +46,18 @@ pub struct Args {
     /// display's range, and one in the others
     #[arg(long, value_name = "CONTRAST", value_parser = part, allow_hyphen_values = true)]
     adaptive: Option<f64>,
-    /// Largest number of bounces between the eye and a surface (whitted); 5 unless given
+    /// Largest number of bounces between the eye and a surface; 5 unless given, and without end for path
     #[arg(long, value_parser = whole::<u32>(0, 1000), allow_negative_numbers = true)]
     depth: Option<u32>,
-    /// Picks the sample positions; 0 unless given
+    /// Which rays go on where a surface both reflects and refracts (distributed): both, or one at random; both
+    /// unless given
+    #[arg(long, value_name = "BRANCHES", value_parser = one_of(&Branching::ALL))]
+    branches: Option<Branching>,
+    /// How lamps are found (path): lamp, by points drawn on them; lobe, by directions drawn from what a surface
+    /// reflects; mis, by both, weighted. All find the same picture; mis unless given
+    #[arg(long, value_name = "STRATEGY", value_parser = one_of(&Strategy::ALL))]
+    estimator: Option<Strategy>,
+    /// Picks the positions and the random numbers of samples; 0 unless given
     #[arg(long, value_parser = whole::<u64>(0, u64::MAX), allow_negative_numbers = true)]
     seed: Option<u64>,
     /// Threads; 0 takes all processors. The picture does not depend on it
@@ -106,6 +114,17 @@ fn finite(text: &str) -> Result<f64, String> {
 fn part(text: &str) -> Result<f64, String> {
     let number = text.trim().parse().ok().filter(|number| (0.0..=1.0).contains(number));
     number.ok_or_else(|| "write a number from 0 to 1".to_owned())
+}
+
+/// Reads one of some names.
+fn one_of<T: Copy + Send + Sync>(
+    known: &'static [(&'static str, T)],
+) -> impl Fn(&str) -> Result<T, String> + Clone {
+    |text| {
+        let value = known.iter().find(|(name, _)| *name == text).map(|(_, value)| *value);
+        let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+        value.ok_or_else(|| format!("write {}", list(&names, "or")))
+    }
 }
 
 /// Reads what is wanted beside the picture.
@@ -271,10 +290,13 @@ fn warn(method: &Method, scene: &Scene, args: &Args) {
         ("--seed", Setting::Sampling, args.seed.is_some()),
         ("--adaptive", Setting::Adaptive, args.adaptive.is_some()),
         ("--depth", Setting::MaxDepth, args.depth.is_some()),
+        ("--branches", Setting::Branching, args.branches.is_some()),
+        ("--estimator", Setting::Strategy, args.estimator.is_some()),
     ];
     warn_of_unused(flags, method.uses, method.name);
     if args.spp == 1 && method.uses.contains(&Setting::Sampling) {
-        let given = [("--seed", args.seed.is_some()), ("--adaptive", args.adaptive.is_some())];
+        let seed_is_idle = args.seed.is_some() && !method.uses.contains(&Setting::Numbers);
+        let given = [("--seed", seed_is_idle), ("--adaptive", args.adaptive.is_some())];
         for (flag, _) in given.into_iter().filter(|(_, is_given)| *is_given) {
             eprintln!(
                 "warning: {flag} changes nothing: the one sample of --spp 1 is the pixel's centre"
@@ -296,14 +318,12 @@ fn trace(
     args: &Args,
 ) -> Result<Outcome> {
     let bar = progress::bar(args.size.pixels() as u64, "tracing");
-    let building = Cell::new(0.0);
+    let (building, bytes) = (Cell::new(0.0), Cell::new(0));
     let index: &BuildIndex = &|primitives| {
         let start = Instant::now();
         let built = structure.build(primitives);
-        let seconds = start.elapsed().as_secs_f64();
-        let mib = built.bytes as f64 / f64::from(1 << 20);
-        bar.suspend(|| say!("index   {seconds:7.3} s   {}, {mib:.1} MiB", structure.name));
-        building.set(building.get() + seconds);
+        building.set(building.get() + start.elapsed().as_secs_f64());
+        bytes.set(bytes.get() + built.bytes);
         built.index
     };
     let pattern = if args.spp == 1 { Pattern::Regular } else { Pattern::Owen };
@@ -316,6 +336,8 @@ fn trace(
         sampling: PixelSampling { pattern, samples: args.spp, seed: args.seed.unwrap_or(0) },
         adaptive: args.adaptive,
         max_depth: args.depth,
+        branching: args.branches,
+        strategy: args.estimator,
         by_products,
         control,
         ..Order::new(scene, index, args.size)
@@ -325,6 +347,9 @@ fn trace(
     let seconds = start.elapsed().as_secs_f64() - building.get();
     bar.finish_and_clear();
     let outcome = outcome.map_err(|_| anyhow!("interrupted; no file was written"))?;
+    // One for what stands still, and one for each way in which parts move.
+    let mib = bytes.get() as f64 / f64::from(1 << 20);
+    say!("index   {:7.3} s   {}, {mib:.1} MiB", building.get(), structure.name);
     let rate = match outcome.work.total(WorkKind::Rays) {
         0 => String::new(),
         rays => format!("; {:.2} M/s", rays as f64 / seconds * 1e-6),

@@ -65,6 +65,13 @@ impl<'a> Appel<'a> {
         lit: &mut Lit,
         recorder: &mut R,
     ) {
-        self.lighting.surfaces(lanes, met, lit, recorder, |_, _| ());
+        self.lighting.surfaces(
+            lanes,
+            met,
+            lit,
+            recorder,
+            #[inline(always)]
+            |_, _| (),
+        );
     }
 }

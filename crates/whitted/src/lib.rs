@@ -3,8 +3,8 @@
 //!
 //! | slide                                   | label          | here                  |
 //! |-----------------------------------------|----------------|-----------------------|
-//! | Modèle Local, calcul des ombres portées | `algo:appel`   | [`Lighting::surface`], by [`lancer_core::illumination::lit`] |
-//! | Intensité lumineuse sur un rayon        | `eq:recursion` | [`recursion`]         |
+//! | Modèle Local, calcul des ombres portées | `algo:appel`   | [`Lighting`], the terms of [`lancer_core::illumination::lit`] for many surfaces |
+//! | Intensité lumineuse sur un rayon        | `eq:recursion` | [`lancer_core::illumination::recursion`] |
 //! | Algorithme                              | `algo:lr`      | [`Whitted::trace`]    |
 //! | Arbre de rayons                         | `fig:ray-tree` | [`RayTree`]           |
 //!
@@ -23,4 +23,4 @@ pub use lighting::Lighting;
 pub use methods::METHODS;
 pub use ray_tree::{RayEnd, RayNode, RayTree, ShadowRay};
 pub use recorder::{Call, RayCounts, RayKind, Recorder};
-pub use trace::{AtLimit, Settings, Whitted, recursion};
+pub use trace::{AtLimit, Settings, Whitted};

@@ -29,10 +29,14 @@ impl<'a> Lighting<'a> {
     /// Collects the lights. An area light counts as a point at its centroid, see
     /// [`Scene::point_sources`](lancer_core::scene::Scene::point_sources).
     pub fn new(world: World<'a>) -> Self {
-        Self { world, sources: world.scene.point_sources(), kernel: Kernel::best() }
+        Self::with_kernel(world, Kernel::best())
     }
 
-    /// What a surface sends to the eye without the help of other surfaces: [`lancer_core::illumination::lit`] by the
+    pub(crate) fn with_kernel(world: World<'a>, kernel: Kernel) -> Self {
+        Self { world, sources: world.scene.point_sources(), kernel }
+    }
+
+    /// What a surface sends to the eye without the help of other surfaces: the sum of [`lancer_core::illumination::lit`] over the
     /// point sources, each of which a shadow ray may or may not reach.
     ///
     /// `to_eye` is unit and points away from the surface.

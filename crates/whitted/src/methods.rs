@@ -10,7 +10,14 @@ pub static METHODS: [Method; 2] = [
         name: "appel",
         about: "visibility and shadows",
         uses: &[Setting::Sampling, Setting::Adaptive],
-        ignores: &[Effect::Mirrors, Effect::Glass, Effect::AreaLights],
+        ignores: &[
+            Effect::Mirrors,
+            Effect::Glass,
+            Effect::AreaLights,
+            Effect::Gloss,
+            Effect::Lens,
+            Effect::Motion,
+        ],
         by_products: &[SAMPLES],
         render: |order| {
             let index = (order.index)(order.scene.into());
@@ -27,7 +34,7 @@ pub static METHODS: [Method; 2] = [
         name: "whitted",
         about: "mirrors and glass as well",
         uses: &[Setting::Sampling, Setting::Adaptive, Setting::MaxDepth],
-        ignores: &[Effect::AreaLights],
+        ignores: &[Effect::AreaLights, Effect::Gloss, Effect::Lens, Effect::Motion],
         by_products: &[SAMPLES],
         render: |order| {
             let index = (order.index)(order.scene.into());

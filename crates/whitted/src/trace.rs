@@ -1,5 +1,6 @@
 use lancer_core::Rgb;
 use lancer_core::geometry::{Interval, Ray, Real};
+use lancer_core::illumination::recursion;
 use lancer_core::intersector::Hit;
 use lancer_core::lanes::FourLanes;
 use lancer_core::optics::{Branches, directions};
@@ -56,22 +57,6 @@ pub enum AtLimit {
         /// Picks one of the random pictures; who survives follows from it and the ray alone.
         seed: u64,
     },
-}
-
-/// Radiance along a ray.
-///
-/// ```text
-/// eq:recursion            I_R = I_Local + k_s I_Refl + k_t I_Trans
-/// ```
-///
-/// (The algorithm's last line on the slides adds the three components without k_s and k_t; the
-/// formula is right.)
-///
-/// Slide « Intensité lumineuse sur un rayon ».
-#[doc(alias = "eq:recursion")]
-#[inline]
-pub fn recursion(local: Rgb, k_s: Rgb, reflected: Rgb, k_t: Rgb, refracted: Rgb) -> Rgb {
-    local + k_s * reflected + k_t * refracted
 }
 
 /// The method of Whitted (1980), the slides' algorithm LR.
@@ -312,5 +297,71 @@ impl Next {
     fn push(&mut self, surface: usize, ray: Ray, depth: u32, weight: f64, k: Rgb) {
         self.calls.push(Call { ray, depth, weight: weight * k.max_element(), kind: self.kind });
         self.from.push(surface);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+    use lancer_core::generate::icosphere;
+    use lancer_core::geometry::Sphere;
+    use lancer_core::image::ImageSize;
+    use lancer_core::intersector::LinearScan;
+    use lancer_core::lanes::{Kernel, Scalar};
+    use lancer_core::scene::{Camera, Material, MaterialId, PointLight, Scene, SphereObject};
+
+    use super::*;
+    use crate::recorder::RayCounts;
+
+    /// A ball of glass, a mirror and a sphere that emits before a shiny mesh, under so many lamps that shadow rays are
+    /// asked before all surfaces are met.
+    fn scene() -> Scene {
+        let mut scene = Scene::of_mesh(icosphere(1));
+        scene.materials[0].rho_s = Rgb::splat(0.7);
+        scene.materials[0].shininess = 9.5;
+        let plain = scene.materials[0];
+        let glass = Material { k_s: Rgb::splat(0.2), k_t: Rgb::splat(0.8), ..plain };
+        scene.materials.extend([
+            Material { refractive_index: 1.5, ..glass },
+            Material { k_s: Rgb::new(0.9, 0.7, 0.5), ..plain },
+            Material { emission: Rgb::ONE, ..plain },
+        ]);
+        for (x, material) in [(-1.0, 1), (1.1, 2), (3.0, 3)] {
+            let shape = Sphere { center: DVec3::new(x, 0.3, 1.2), radius: 0.7 };
+            scene.spheres.push(SphereObject { shape, material: MaterialId(material) });
+        }
+        for k in 0..40 {
+            let position = DVec3::new(f64::from(k) - 20.0, 5.0, 6.0);
+            scene.lights.push(PointLight { position, intensity: Rgb::new(3.0, 2.0, 1.0) });
+        }
+        let look_at = DVec3::new(0.0, 0.2, 0.0);
+        scene.camera = Camera { eye: DVec3::new(0.3, 0.4, 4.0), look_at, ..scene.camera };
+        scene.background = Rgb::new(0.2, 0.3, 0.4);
+        scene.ambient = Rgb::splat(0.1);
+        scene
+    }
+
+    /// The processor's vectors and their scalar twin, many rays together and each alone: one picture.
+    #[test]
+    fn vectors_and_their_twin_light_alike() {
+        let scene = scene();
+        let index = LinearScan::new(&scene);
+        let world = World { scene: &scene, index: &index };
+        let through = scene.camera.primary_rays(ImageSize::new(24, 16));
+        let pixels = (0..16).flat_map(|y| (0..24).map(move |x| (f64::from(x), f64::from(y))));
+        let rays: Vec<Ray> = pixels.map(|(x, y)| through.through(x + 0.5, y + 0.5)).collect();
+        let pictures = [Kernel::best(), Kernel::Scalar(Scalar)].map(|kernel| {
+            let lighting = Lighting::with_kernel(world, kernel);
+            let whitted = Whitted { lighting, settings: Settings::default() };
+            let (mut together, mut counts) = (vec![Rgb::NAN; rays.len()], RayCounts::default());
+            whitted.trace_all(&rays, &mut together, &mut counts);
+            let mut alone = RayCounts::default();
+            let each: Vec<Rgb> = rays.iter().map(|ray| whitted.trace(ray, &mut alone)).collect();
+            assert!(together == each && counts == alone);
+            (together, counts)
+        });
+        assert!(pictures[0] == pictures[1]);
+        let RayCounts { mirror, refracted, shadow, .. } = pictures[0].1;
+        assert!(mirror > 100 && refracted > 100 && shadow > 8192, "{mirror} {refracted} {shadow}");
     }
 }

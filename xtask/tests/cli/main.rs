@@ -158,6 +158,8 @@ fn wrong_options_are_refused_with_a_cure() {
         ["--exposure", "bright"],
         ["--method", "witted"],
         ["--index", "linaer"],
+        ["--branches", "none"],
+        ["--estimator", "mix"],
         ["--also", "samples"],
         ["--also", "smples=new.exr"],
         ["--also", "samples=new.jpg"],
@@ -171,8 +173,10 @@ fn wrong_options_are_refused_with_a_cure() {
     error: invalid value '1,,3,4' for '--light <X,Y,Z,INTENSITY>': `` is not a number; write one such as -1.5
     error: invalid value 'inf' for '--exposure <EV>': `inf` is not a number; write one such as -1.5
     error: invalid value 'bright' for '--exposure <EV>': `bright` is not a number; write one such as -1.5
-    error: unknown method `witted`; known: whitted, appel
+    error: unknown method `witted`; known: whitted, appel, path, distributed
     error: unknown index `linaer`; known: linear, wide, octree, bvh, grid, kd, bsp, obvhs-bvh2, obvhs-cwbvh
+    error: invalid value 'none' for '--branches <BRANCHES>': write both or one
+    error: invalid value 'mix' for '--estimator <STRATEGY>': write lamp, lobe or mis
     error: invalid value 'samples' for '--also <NAME=FILE>': write NAME=FILE, such as samples=samples.exr
     error: unknown by-product of whitted `smples`; known: samples
     error: --also: what kind of picture is `new.jpg`? Its name must end in .png (sRGB) or .exr (linear)
@@ -194,11 +198,20 @@ fn what_has_no_effect_is_warned_of() {
     ");
     assert_snapshot!(render("whitted", &["--method=appel"]), @"warning: appel leaves out what the scene has: mirrors (k_s), glass (k_t)");
     assert_snapshot!(render("room", &["--depth=3"]), @"warning: whitted leaves out what the scene has: the size of lamps (they count as points)");
+    assert_snapshot!(render("effects", &[]), @"warning: whitted leaves out what the scene has: the size of lamps (they count as points), gloss (mirrors and glass count as smooth), the lens (all is in focus), motion (all is where it is as the shutter opens)");
+    assert_snapshot!(render("effects", &["--method=distributed"]), @"");
     assert_eq!(render("whitted", &["--depth=3", "--spp=2", "--adaptive=0.1", "--seed=4"]), "");
     assert_snapshot!(render("whitted", &["--seed=4", "--adaptive=0.1"]), @r"
     warning: --seed changes nothing: the one sample of --spp 1 is the pixel's centre
     warning: --adaptive changes nothing: the one sample of --spp 1 is the pixel's centre
     ");
+    assert_snapshot!(render("whitted", &["--branches=one", "--estimator=mis"]), @r"
+    warning: --branches changes nothing: whitted does not use it
+    warning: --estimator changes nothing: whitted does not use it
+    ");
+    assert_snapshot!(render("penumbra", &["--method=path", "--seed=4", "--estimator=lamp"]), @"warning: path leaves out what the scene has: the ambient constant (the light that it stands for is followed)");
+    assert_eq!(render("cornell", &["--method=path", "--seed=4", "--estimator=lamp"]), "");
+    assert_snapshot!(render("cornell", &["--method=distributed", "--spp=2", "--adaptive=0.1"]), @"warning: --adaptive changes nothing: distributed does not use it");
     let walk = ["--scene=whitted", "--pixel=1,1", "--size=8x8"];
     assert_snapshot!(warnings(&[&["step", "whitted", "--index=kd"], &walk[..]].concat()), @"warning: --index changes nothing: whitted does not use it");
     assert_snapshot!(warnings(&[&["step", "accel", "--index=kd", "--depth=2"], &walk[..]].concat()), @"warning: --depth changes nothing: accel does not use it");
@@ -252,7 +265,7 @@ fn wrong_scenes_are_refused_with_a_cure() {
         refusals(&folder, lines)
     };
     assert_snapshot!(refused(&["witted", "flake:99", "flake:x", "room:2"]), @r"
-    error: unknown scene `witted`; known: whitted, kitchen, flake, town, room, gears, soup, scan, atrium, horizon, tetrahedra, stadium; or name a .toml or .obj file
+    error: unknown scene `witted`; known: whitted, kitchen, flake, town, room, gears, cornell, effects, soup, scan, atrium, horizon, tetrahedra, stadium, penumbra; or name a .toml or .obj file
     error: flake:99: the level is a number from 0 to 7
     error: flake:x: the level is a number from 0 to 7
     error: room: only generated scenes have a level; leave it out
@@ -485,7 +498,7 @@ fn labels_are_found_from_any_folder() {
     let one = text(&accepted(&folder(&[]), &["eq", "reflected-ray"]).stdout);
     let first = one.lines().next().unwrap();
     assert!(first.starts_with("crates/core/src/optics.rs:"), "{one}");
-    assert!(first.contains("definition  pub fn reflect("), "{one}");
+    assert!(first.contains("definition  pub fn reflect<V: Vector>("), "{one}");
 }
 
 #[test]

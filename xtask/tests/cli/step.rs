@@ -38,7 +38,7 @@ fn steps_that_cannot_be_walked_are_refused() {
     error: invalid value '1' for '--pixel <X,Y>': write column and row as two whole numbers, such as 120,80
     error: invalid value '1,2,3' for '--pixel <X,Y>': write column and row as two whole numbers, such as 120,80
     error: invalid value '17' for '--depth <DEPTH>': write a whole number from 0 to 16
-    error: unknown scene `romo`; known: room, soup, town, scan, horizon, flake, gears, atrium, whitted, stadium, kitchen, tetrahedra; or name a .toml or .obj file
+    error: unknown scene `romo`; known: room, soup, town, scan, horizon, flake, gears, atrium, cornell, whitted, effects, penumbra, stadium, kitchen, tetrahedra; or name a .toml or .obj file
     error: gone.toml: No such file or directory (os error 2); check the path and its permissions
     error: --out: what kind of file is `old.png`? Its name must end in .html
     error: --out: cannot write `missing/new.html`: there is no folder `missing`; create it first
