@@ -112,6 +112,7 @@ fn detailed(name: &str, level: Option<&str>) -> Result<Loaded> {
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
+    use lancer_core::scene::Emitter;
 
     use super::*;
 
@@ -144,6 +145,7 @@ mod tests {
         assert!((lamp.position - DVec3::new(0.0, 2.98, 2.5)).length() < 1e-12);
         // 0.8 by 0.8 metres that face down.
         assert!((lamp.intensity.x * std::f64::consts::PI - 94.0 * 0.64).abs() < 1e-12);
-        assert!(lamp.facing.is_some_and(|n| (n + DVec3::Y).length() < 1e-12));
+        let Emitter::Face { normal } = lamp.emitter else { panic!("a face") };
+        assert!((normal + DVec3::Y).length() < 1e-12);
     }
 }

@@ -88,7 +88,7 @@ fn a_primary_ray_is_the_courses_to_rounding() {
     let size = ImageSize::new(64, 48);
     for _ in 0..200 {
         let [eye, look_at, up] = [0; 3].map(|_| 9.0 * point(&mut random));
-        let camera = Camera { eye, look_at, up, fov: 20.0 + 60.0 * random.number() };
+        let camera = Camera { eye, look_at, up, fov: 20.0 + 60.0 * random.number(), lens: None };
         let (x, y) = (64.0 * random.number(), 48.0 * random.number());
         let (ours, course) =
             (primary_ray(&camera, size, x, y), camera.primary_rays(size).through(x, y));

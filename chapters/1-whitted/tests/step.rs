@@ -8,13 +8,14 @@ use chapter_1::step::walk;
 use insta::assert_snapshot;
 use lancer_core::Rgb;
 use lancer_core::geometry::Ray;
+use lancer_core::illumination::recursion;
 use lancer_core::image::ImageSize;
 use lancer_core::intersector::LinearScan;
 use lancer_core::scene::load::{Loaded, parse_scene};
 use lancer_core::world::World;
 use lancer_figure::Walk;
 use lancer_lesson::chapter::WalkOrder;
-use lancer_whitted::{RayEnd, RayTree, Settings, Whitted, recursion};
+use lancer_whitted::{RayEnd, RayTree, Settings, Whitted};
 
 fn walked(name: &str, loaded: &Loaded, pixel: [u32; 2], max_depth: u32) -> Walk {
     let (size, max_depth) = (ImageSize::new(64, 48), Some(max_depth));

@@ -194,7 +194,8 @@ fn through(camera: &Camera, frame: [DVec3; 3], size: ImageSize, x: f64, y: f64) 
 const FOV: f64 = 73.739_795_291_688_04;
 
 /// Along −z with y up.
-const PLAIN: Camera = Camera { eye: DVec3::ZERO, look_at: DVec3::NEG_Z, up: DVec3::Y, fov: FOV };
+const PLAIN: Camera =
+    Camera { eye: DVec3::ZERO, look_at: DVec3::NEG_Z, up: DVec3::Y, fov: FOV, lens: None };
 /// Two rows of four pixels.
 const WIDE: (u32, u32) = (4, 2);
 
@@ -205,6 +206,7 @@ const TURNED: Camera = Camera {
     look_at: DVec3::new(5.0, 4.0, 15.0),
     up: DVec3::new(-1.0, 9.0, 4.0),
     fov: FOV,
+    lens: None,
 };
 
 fn compare(
@@ -215,7 +217,7 @@ fn compare(
     direction: DVec3,
 ) -> Verdict {
     let case = || {
-        let Camera { eye, look_at, up, fov } = camera;
+        let Camera { eye, look_at, up, fov, lens: _ } = camera;
         format!(
             "eye {}, look_at {}, up {}, vertical fov {}°, {width} × {height} pixels, film point \
              ({x} to the right, {y} down)",

@@ -397,5 +397,10 @@ fn draw(subject: &Subject) -> Image {
 }
 
 /// The ball's nearest point is at distance 3.
-const BALL_CAMERA: Camera =
-    Camera { eye: DVec3::new(0.8, 1.6, 3.6), look_at: DVec3::ZERO, up: DVec3::Y, fov: 34.0 };
+const BALL_CAMERA: Camera = Camera {
+    eye: DVec3::new(0.8, 1.6, 3.6),
+    look_at: DVec3::ZERO,
+    up: DVec3::Y,
+    fov: 34.0,
+    lens: None,
+};

@@ -43,7 +43,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         solution: Solution {
             answer: include_str!("../../solutions/e08_lr.rs"),
             file: "crates/whitted/src/trace.rs",
-            item: "fn lr<",
+            item: "fn lr",
             notice: "it is called with many rays at once, which are asked together; no ray is traced for a share of \
                      0, `Branches` in crates/core/src/optics.rs chooses n₁, n₂ and what total reflection does, and no \
                      shadow ray is cast to a lamp that would add nothing",

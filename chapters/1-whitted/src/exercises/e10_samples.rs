@@ -33,7 +33,7 @@ pub const EXERCISE: Exercise<Subject> = Exercise {
         ],
         solution: Solution {
             answer: include_str!("../../solutions/e10_samples.rs"),
-            file: "crates/core/src/sampling.rs",
+            file: "crates/core/src/sampling/pixel.rs",
             item: "pub fn some_of_pixel",
             notice: "the same grid beside two random layouts; `rmse` is in crates/core/src/metric/mod.rs",
         },

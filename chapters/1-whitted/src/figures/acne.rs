@@ -73,6 +73,7 @@ const CAMERA: Camera = Camera {
     look_at: DVec3::new(0.0, 0.0, 0.08),
     up: DVec3::Y,
     fov: 29.5,
+    lens: None,
 };
 /// Points nearer to the border of a shadow than this are not judged: far from the origin the scene's own
 /// coordinates are rounded by up to 10⁻¹⁰ of its size.
@@ -140,6 +141,7 @@ impl Site {
                 mesh
             },
             spheres: Vec::new(),
+            motions: Vec::new(),
             materials: vec![Material::matte(Rgb::splat(0.7))],
             lights: Vec::new(),
             ambient: Rgb::ZERO,

@@ -14,6 +14,7 @@ const CAMERA: Camera = Camera {
     look_at: DVec3::new(0.0, 0.0, -1.9),
     up: DVec3::new(0.0, 0.6, 0.35),
     fov: 50.0,
+    lens: None,
 };
 const SIZE: ImageSize = ImageSize::new(9, 6);
 /// The pixel whose ray is drawn.

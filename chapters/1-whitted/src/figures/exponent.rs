@@ -28,12 +28,13 @@ const ALIKE_AT: f64 = 10.0;
 fn ball(material: Material, distance: f64, fov: f64, light: PointLight) -> Scene {
     let eye = DVec3::Z * distance;
     Scene {
-        camera: Camera { eye, look_at: DVec3::ZERO, up: DVec3::Y, fov },
+        camera: Camera { eye, look_at: DVec3::ZERO, up: DVec3::Y, fov, lens: None },
         mesh: Mesh::default(),
         spheres: vec![SphereObject {
             shape: Sphere { center: DVec3::ZERO, radius: 1.0 },
             material: MaterialId(0),
         }],
+        motions: Vec::new(),
         materials: vec![material],
         lights: vec![light],
         ambient: Rgb::splat(0.15),

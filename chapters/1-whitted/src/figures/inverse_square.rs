@@ -74,9 +74,16 @@ fn white_floor() -> Scene {
     let mut mesh = Mesh::default();
     square(&mut mesh, DVec3::ZERO, DVec3::Z, DVec3::X, MaterialId(0));
     Scene {
-        camera: Camera { eye: DVec3::ONE, look_at: DVec3::ZERO, up: DVec3::Y, fov: 40.0 },
+        camera: Camera {
+            eye: DVec3::ONE,
+            look_at: DVec3::ZERO,
+            up: DVec3::Y,
+            fov: 40.0,
+            lens: None,
+        },
         mesh,
         spheres: Vec::new(),
+        motions: Vec::new(),
         materials: vec![
             Material::matte(Rgb::ONE),
             Material { emission: Rgb::ONE, ..Material::matte(Rgb::ZERO) },

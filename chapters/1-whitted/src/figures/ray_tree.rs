@@ -6,6 +6,7 @@ use glam::DVec2;
 use lancer_accel::ObvhsBvh2;
 use lancer_core::Rgb;
 use lancer_core::geometry::Ray;
+use lancer_core::illumination::recursion;
 use lancer_core::image::ImageSize;
 use lancer_core::intersector::{Hit, Intersector, Observer, Query, Traversal, Wanted};
 use lancer_core::scene::Scene;
@@ -17,7 +18,7 @@ use lancer_figure::{
 };
 use lancer_lesson::picture::shown;
 use lancer_lesson::view::{Side, View};
-use lancer_whitted::{AtLimit, RayEnd, RayNode, RayTree, Settings, Whitted, recursion};
+use lancer_whitted::{AtLimit, RayEnd, RayNode, RayTree, Settings, Whitted};
 
 use super::whitted_picture;
 use crate::scenes;

@@ -30,9 +30,10 @@ fn frame(at: DVec2, diameter: f64, size: ImageSize, sampling: PixelSampling) -> 
     let slope = 0.5 * diameter / DISTANCE;
     let radius = DISTANCE * slope / slope.hypot(1.0);
     let scene = Scene {
-        camera: Camera { eye: DVec3::ZERO, look_at: DVec3::NEG_Z, up: DVec3::Y, fov },
+        camera: Camera { eye: DVec3::ZERO, look_at: DVec3::NEG_Z, up: DVec3::Y, fov, lens: None },
         mesh: Mesh::default(),
         spheres: vec![SphereObject { shape: Sphere { center, radius }, material: MaterialId(0) }],
+        motions: Vec::new(),
         materials: vec![Material { emission: Rgb::ONE, ..Material::matte(Rgb::ZERO) }],
         lights: Vec::new(),
         ambient: Rgb::ZERO,

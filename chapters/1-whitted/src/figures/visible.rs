@@ -20,7 +20,8 @@ use lancer_figure::{
 struct Polygon([DVec3; 4]);
 
 /// The eye of [`Polygon`]: half the picture's height is a unit at depth 1.
-const CAMERA: Camera = Camera { eye: DVec3::ZERO, look_at: DVec3::NEG_Z, up: DVec3::Y, fov: 90.0 };
+const CAMERA: Camera =
+    Camera { eye: DVec3::ZERO, look_at: DVec3::NEG_Z, up: DVec3::Y, fov: 90.0, lens: None };
 
 /// A polygon's two triangles, by their corners.
 const TRIANGLES: [[usize; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
@@ -124,6 +125,7 @@ impl View {
             camera: CAMERA,
             mesh,
             spheres: Vec::new(),
+            motions: Vec::new(),
             materials: vec![Material::matte(Rgb::ONE)],
             lights: Vec::new(),
             ambient: Rgb::ONE,

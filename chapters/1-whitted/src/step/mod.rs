@@ -9,6 +9,7 @@ pub mod view;
 use glam::{DVec2, DVec3};
 use lancer_accel::ObvhsBvh2;
 use lancer_core::Rgb;
+use lancer_core::illumination::recursion;
 use lancer_core::image::{Image, ImageSize};
 use lancer_core::intersector::Hit;
 use lancer_core::method::Setting;
@@ -20,7 +21,7 @@ use lancer_figure::{Backdrop, Color, INK, Pen, Step, Stroke, Walk, number};
 use lancer_lesson::chapter::{WalkOrder, Walkthrough};
 use lancer_lesson::picture::marked_picture;
 use lancer_lesson::view::{View, printable};
-use lancer_whitted::{RayEnd, RayKind, RayNode, RayTree, Settings, Whitted, recursion};
+use lancer_whitted::{RayEnd, RayKind, RayNode, RayTree, Settings, Whitted};
 
 use terms::{LampTerm, LocalTerms, Spawned};
 use view::kind;

@@ -88,7 +88,7 @@ impl LampTerm {
         let light = source.arriving(surface);
         let distance = light.shadow_ray.direction.length();
         let to_light = light.shadow_ray.direction * distance.recip();
-        let intensity = source.intensity_towards(to_light);
+        let intensity = (light.intensity)(to_light);
         let part = |reflectance: &Reflectance| local(reflectance, n, to_light, to_eye);
         let (matte, shiny) = (
             Reflectance { specular: Rgb::ZERO, ..*reflectance },

@@ -297,7 +297,7 @@ fn a_beam_finds_what_the_rays_in_its_border_hit() {
     for (far, by_points_misses) in [(0.0, 0..1), (1e4, 100..2000), (1e8, 100..2000)] {
         let eye = far * DVec3::new(1.0, -2.0, 3.0);
         let toward = DVec3::new(-0.3, 0.2, 0.9);
-        let camera = Camera { eye, look_at: eye + toward, up: DVec3::Y, fov: 40.0 };
+        let camera = Camera { eye, look_at: eye + toward, up: DVec3::Y, fov: 40.0, lens: None };
         let rays = camera.primary_rays(ImageSize::new(SIZE, SIZE));
         let mut random = Pcg64::new(19, 1);
         let mut number = move || f64::from(random.next_u32()) / f64::from(u32::MAX);
