@@ -103,7 +103,14 @@ fn select(words: &[String]) -> Result<Vec<(&'static Chapter, &'static Figure)>> 
     let is_chosen = |(chapter, figure): &(&Chapter, &Figure)| {
         chosen.iter().any(|name| [chapter.number, figure.id, figure.name].contains(name))
     };
-    Ok(all.into_iter().filter(is_chosen).collect())
+    let selected: Vec<_> = all.into_iter().filter(is_chosen).collect();
+    if selected.is_empty() {
+        let chapters = chosen.join(" and ");
+        bail!(
+            "chapter {chapters} has no figures; `cargo xtask figures --list` lists those that there are"
+        );
+    }
+    Ok(selected)
 }
 
 /// A chapter's number and title.

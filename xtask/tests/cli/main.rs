@@ -492,6 +492,11 @@ fn incomplete_and_unknown_commands_are_refused() {
 }
 
 #[test]
+fn a_chapter_without_figures_is_named() {
+    assert_snapshot!(refusal(&folder(&[]), &["figures", "3"]), @"error: chapter 3 has no figures; `cargo xtask figures --list` lists those that there are");
+}
+
+#[test]
 fn labels_are_found_from_any_folder() {
     let all = text(&accepted(&folder(&[]), &["eq"]).stdout);
     assert!(all.contains("\neq:reflected-ray  "), "{all}");
