@@ -10,13 +10,7 @@ pub static METHODS: [Method; 2] = [
     Method {
         name: "distributed",
         about: "soft shadows, gloss, depth of field and motion blur as well",
-        uses: &[
-            Setting::Sampling,
-            Setting::Numbers,
-            Setting::Adaptive,
-            Setting::MaxDepth,
-            Setting::Branching,
-        ],
+        uses: &[Setting::Sampling, Setting::Numbers, Setting::MaxDepth, Setting::Branching],
         ignores: &[],
         by_products: &[SAMPLES],
         render: |order| {
@@ -41,13 +35,7 @@ pub static METHODS: [Method; 2] = [
     Method {
         name: "path",
         about: "all light between surfaces, without the ambient constant",
-        uses: &[
-            Setting::Sampling,
-            Setting::Numbers,
-            Setting::Adaptive,
-            Setting::MaxDepth,
-            Setting::Strategy,
-        ],
+        uses: &[Setting::Sampling, Setting::Numbers, Setting::MaxDepth, Setting::Strategy],
         ignores: &[Effect::Ambient],
         by_products: &[SAMPLES],
         render: |order| {
