@@ -11,7 +11,7 @@ use lancer_core::scene::PointSource;
 use lancer_core::world::SurfacePoint;
 
 use crate::gloss::spread;
-use crate::lamps::{Lamps, point_lights};
+use crate::lamps::Lamps;
 use crate::numbers::{Numbers, of_sample};
 use crate::rays::RayCounts;
 
@@ -70,7 +70,10 @@ impl<'a> Distributed<'a> {
     /// Prepares the method for a world, of which parts may move.
     pub fn new(world: impl Into<Moment<'a>>, settings: Settings) -> Self {
         let world = world.into();
-        let (points, lamps) = (point_lights(world.scene()), Lamps::new(world.scene()));
+        let (points, lamps) = (
+            world.scene().lights.iter().map(PointSource::from).collect(),
+            Lamps::new(world.scene()),
+        );
         Self { world, points, lamps, settings }
     }
 

@@ -9,20 +9,8 @@ use lancer_core::geometry::Sphere;
 use lancer_core::illumination::Arriving;
 use lancer_core::moving::Moment;
 use lancer_core::sampling::{LampSample, Patch, SeenSphere};
-use lancer_core::scene::{
-    self, AreaLight, Emitter, FaceId, PointSource, PrimitiveId, Scene, SphereLight,
-};
+use lancer_core::scene::{self, AreaLight, FaceId, PrimitiveId, Scene, SphereLight};
 use lancer_core::world::SurfacePoint;
-
-/// The scene's point lights, as methods see them that take lamps with a size for what they are.
-pub fn point_lights(scene: &Scene) -> Vec<PointSource> {
-    let source = |light: &scene::PointLight| PointSource {
-        position: light.position,
-        intensity: light.intensity,
-        emitter: Emitter::Point,
-    };
-    scene.lights.iter().map(source).collect()
-}
 
 /// What emits: a face, which shines to the side of its normal, or a sphere, which shines outwards.
 #[derive(Clone, Debug)]

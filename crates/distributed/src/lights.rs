@@ -1,7 +1,7 @@
 use lancer_core::Rgb;
 use lancer_core::scene::{PointSource, Scene};
 
-use crate::lamps::{Lamp, Lamps, point_lights};
+use crate::lamps::{Lamp, Lamps};
 
 /// The lights of a scene, of which a path asks one per surface.
 ///
@@ -30,7 +30,8 @@ pub enum Light<'a> {
 impl Lights {
     /// Collects them; `choose_lamps` tells whether lamps with a size are chosen, too, or left to those who meet them.
     pub fn new(scene: &Scene, choose_lamps: bool) -> Self {
-        let (points, lamps) = (point_lights(scene), Lamps::new(scene));
+        let points: Vec<PointSource> = scene.lights.iter().map(PointSource::from).collect();
+        let lamps = Lamps::new(scene);
         let chosen = if choose_lamps { lamps.as_slice() } else { &[] };
         // π² times these are the powers: a lamp shines to one side, with a cosine.
         let of_points = points.iter().map(|point| 4.0 * point.intensity.element_sum());

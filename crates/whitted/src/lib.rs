@@ -3,7 +3,7 @@
 //!
 //! | slide                                   | label          | here                  |
 //! |-----------------------------------------|----------------|-----------------------|
-//! | Modèle Local, calcul des ombres portées | `algo:appel`   | [`Lighting`], the terms of [`lancer_core::illumination::lit`] for many surfaces |
+//! | Modèle Local, calcul des ombres portées | `algo:appel`   | [`Lighting::surface`], by [`lancer_core::illumination::lit`] |
 //! | Intensité lumineuse sur un rayon        | `eq:recursion` | [`lancer_core::illumination::recursion`] |
 //! | Algorithme                              | `algo:lr`      | [`Whitted::trace`]    |
 //! | Arbre de rayons                         | `fig:ray-tree` | [`RayTree`]           |

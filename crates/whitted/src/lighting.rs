@@ -1,17 +1,18 @@
 use glam::DVec3;
 use lancer_core::Rgb;
 use lancer_core::geometry::{Interval, Ray, Vectors};
-use lancer_core::illumination::{Reflectance, ambient};
+use lancer_core::illumination::{Reflectance, ambient, lit};
 use lancer_core::intersector::Hit;
 use lancer_core::lanes::{FourLanes, Kernel};
 use lancer_core::scene::{Material, PointSource, Scene};
-use lancer_core::with_lanes;
 use lancer_core::world::{SurfacePoint, World};
 
 use crate::recorder::Recorder;
 
 /// Shadow rays that wait, before they are asked together; a group of four surfaces may bring more.
 const MOST: usize = 1 << 12;
+/// A shadow ray reaches its light at 1.
+const TO_LIGHT: Interval = Interval::up_to(1.0);
 
 /// A world and its lights as points: what both methods of the chapter need at a surface.
 ///
@@ -36,8 +37,8 @@ impl<'a> Lighting<'a> {
         Self { world, sources: world.scene.point_sources(), kernel }
     }
 
-    /// What a surface sends to the eye without the help of other surfaces: the sum of [`lancer_core::illumination::lit`] over the
-    /// point sources, each of which a shadow ray may or may not reach.
+    /// What a surface sends to the eye without the help of other surfaces: [`lit`] by the point sources,
+    /// each of which a shadow ray may or may not reach.
     ///
     /// `to_eye` is unit and points away from the surface.
     pub fn surface<R: Recorder>(
@@ -46,11 +47,18 @@ impl<'a> Lighting<'a> {
         to_eye: DVec3,
         recorder: &mut R,
     ) -> Rgb {
-        let mut lit = Lit::with_capacity(1);
-        lit.meet(self.world.scene, 0, *surface, -to_eye);
-        with_lanes!(self.kernel, self.one(&mut lit, (), ()));
-        self.answer(&mut lit, recorder);
-        lit.local[0]
+        let World { scene, index } = self.world;
+        let reflectance = scene.reflectance(surface);
+        let unlit = ambient(reflectance.diffuse, scene.ambient) + scene.emitted(surface, to_eye);
+        let n = surface.shading_normal_towards(to_eye);
+        let arriving = self.sources.iter().map(|source| source.arriving(surface));
+        let radiance = lit(unlit, &reflectance, n, to_eye, arriving, |shadow_ray| {
+            let visible = !index.occluded(shadow_ray, TO_LIGHT);
+            recorder.shadow(shadow_ray, visible);
+            visible
+        });
+        recorder.local(radiance);
+        radiance
     }
 
     /// What computes with several surfaces at once.
@@ -87,11 +95,6 @@ impl<'a> Lighting<'a> {
         }
     }
 
-    #[inline(always)]
-    fn one<L: FourLanes>(&self, lanes: L, lit: &mut Lit, (): (), (): ()) {
-        self.light(lanes, lit);
-    }
-
     /// Asks about the last surfaces how much light arrives if nothing is in its way: [`Arriving::unshadowed`], which
     /// the shadow rays then decide on.
     ///
@@ -107,7 +110,8 @@ impl<'a> Lighting<'a> {
             lanes.reflectances([&a.reflectance, &b.reflectance, &c.reflectance, &d.reflectance]);
         let to_eye = -incident;
         let n = surface.shading_normal_towards(to_eye);
-        for source in &self.sources {
+        let sources = if last.iter().all(Met::is_dark) { &[] } else { &*self.sources };
+        for source in sources {
             let light = source.arriving(&surface);
             let terms = lanes.separate(light.unshadowed(&reflectance, n, to_eye));
             let rays = lanes.rays(light.shadow_ray);
@@ -124,8 +128,7 @@ impl<'a> Lighting<'a> {
     /// Asks the shadow rays that wait, and adds the light of those that reach it: to each surface light by light.
     pub(crate) fn answer<R: Recorder>(&self, lit: &mut Lit, recorder: &mut R) {
         lit.occluded.resize(lit.shadow_rays.len(), false);
-        let to_light = Interval::up_to(1.0);
-        self.world.index.occluded_all(&lit.shadow_rays, to_light, &mut lit.occluded);
+        self.world.index.occluded_all(&lit.shadow_rays, TO_LIGHT, &mut lit.occluded);
         let terms = lit.terms.drain(..).zip(lit.occluded.drain(..));
         for (ray, ((k, term), is_occluded)) in lit.shadow_rays.drain(..).zip(terms) {
             recorder.shadow(&ray, !is_occluded);
@@ -159,6 +162,12 @@ pub(crate) struct Met {
 }
 
 impl Met {
+    /// Whether it sends back nothing of what arrives from lights.
+    #[inline(always)]
+    fn is_dark(&self) -> bool {
+        self.reflectance.diffuse == Rgb::ZERO && self.reflectance.specular == Rgb::ZERO
+    }
+
     #[inline(always)]
     pub(crate) fn material<'s>(&self, scene: &'s Scene) -> &'s Material {
         scene.material(self.surface.material)

@@ -28,13 +28,14 @@ use std::ops::AddAssign;
 
 use glam::DVec3;
 use lancer_accel::ObvhsBvh2;
+use lancer_core::Rgb;
+use lancer_core::geometry::Ray;
 use lancer_core::image::ImageSize;
-use lancer_core::render::Rendering;
-use lancer_core::sampling::PixelSampling;
+use lancer_core::render::{AlongRays, Control, Rendering, render_pixels};
+use lancer_core::sampling::{PixelSampling, Sample};
 use lancer_core::scene::Scene;
 use lancer_core::world::World;
 use lancer_figure::{Figure, Point};
-use lancer_lesson::picture::picture;
 use lancer_whitted::{RayCounts, Recorder, Settings, Whitted};
 
 /// All figures, by number: the numerics, the course's plates, and the drawings of its geometry.
@@ -64,7 +65,7 @@ pub const FIGURES: &[Figure] = &[
     Figure { id: "1.18", name: "refraction", make: refraction::make },
 ];
 
-/// Whitted's method over a scene; `counts` is anything that follows the recursion.
+/// Whitted's method over a scene; `counts` is anything that follows many rays at once.
 fn trace_picture<C: Recorder + Default + Send + AddAssign>(
     scene: &Scene,
     settings: Settings,
@@ -72,8 +73,14 @@ fn trace_picture<C: Recorder + Default + Send + AddAssign>(
     sampling: PixelSampling,
 ) -> Rendering<C> {
     let index = ObvhsBvh2::build(scene);
-    let method = Whitted::new(World { scene, index: &index }, settings);
-    picture(scene, size, sampling, |ray, counts| method.trace(ray, counts))
+    let world = World { scene, index: &index };
+    let method = Whitted::new(world, settings);
+    let trace = |rays: &[Ray], _: &[Sample], radiance: &mut [Rgb], counts: &mut C| {
+        method.trace_all(rays, radiance, counts);
+    };
+    let rendering =
+        render_pixels(size, sampling, Control::default(), AlongRays::new(world, size, trace));
+    rendering.expect("nobody cancels a figure")
 }
 
 /// Whitted's method and its rays, one sample in the centre of each pixel.

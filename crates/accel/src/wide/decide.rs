@@ -8,7 +8,7 @@ use lancer_core::intersector::{Hit, Probe};
 use smallvec::SmallVec;
 
 use super::Wide;
-use super::lanes::{Lanes, difference, gather};
+use super::lanes::{Lanes, difference};
 use super::packet::RAYS;
 
 /// A ray that `f64` decides on, triangle by triangle: by the formulas of [`intersect_triangles`] in lanes of one
@@ -143,16 +143,16 @@ fn solve_four<L: Lanes>(
     let ids = [of_i.0, of_j.0, of_k.0, of_m.0];
     let corners = if ids == [ids[0]; 4] {
         let [a, b, c] = wide.corners(of_i.1);
-        [gather(l, [a; 4]), gather(l, [b; 4]), gather(l, [c; 4])]
+        [l.vectors([a; 4]).0, l.vectors([b; 4]).0, l.vectors([c; 4]).0]
     } else {
         let ([a, b, c], [d, e, f]) = (wide.corners(of_i.1), wide.corners(of_j.1));
         let ([g, h, n], [p, q, r]) = (wide.corners(of_k.1), wide.corners(of_m.1));
-        [gather(l, [a, d, g, p]), gather(l, [b, e, h, q]), gather(l, [c, f, n, r])]
+        [l.vectors([a, d, g, p]).0, l.vectors([b, e, h, q]).0, l.vectors([c, f, n, r]).0]
     };
-    let origin = gather(l, [i.origin, j.origin, k.origin, m.origin]);
+    let origin = l.vectors([i.origin, j.origin, k.origin, m.origin]).0;
     let [a, b, c] = corners;
     let corners = [difference(a, origin), difference(b, origin), difference(c, origin)];
-    let directions = gather(l, [i.direction, j.direction, k.direction, m.direction]);
+    let directions = l.vectors([i.direction, j.direction, k.direction, m.direction]).0;
     let (t, [u, v, w]) = solve_triangle(corners, &Shear::along(axis, directions));
     let (t, u, v, w) = (l.numbers(t), l.numbers(u), l.numbers(v), l.numbers(w));
     for (lane, (place, _)) in four.into_iter().enumerate() {

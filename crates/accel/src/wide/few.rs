@@ -9,7 +9,7 @@ use lancer_core::scene::{PrimitiveId, Shape, Subset};
 
 use smallvec::SmallVec;
 
-use super::lanes::{Lanes, difference, gather};
+use super::lanes::{Lanes, difference};
 
 /// So many primitives are asked one and all: a tree would cost more.
 pub(super) const FEW: usize = 16;
@@ -318,8 +318,8 @@ impl<L: Lanes> Rays<L> {
     fn four(lanes: L, rays: &[Ray]) -> Self {
         let last = rays.len() - 1;
         let [a, b, c, d] = [&rays[0], &rays[last.min(1)], &rays[last.min(2)], &rays[last.min(3)]];
-        let origin = gather(lanes, [a.origin, b.origin, c.origin, d.origin]);
-        let direction = gather(lanes, [a.direction, b.direction, c.direction, d.direction]);
+        let origin = lanes.vectors([a.origin, b.origin, c.origin, d.origin]).0;
+        let direction = lanes.vectors([a.direction, b.direction, c.direction, d.direction]).0;
         let longest = [
             Axis::longest(a.direction),
             Axis::longest(b.direction),

@@ -5,7 +5,7 @@ use lancer_core::geometry::{Interval, Ray, Real, intersect_spheres};
 use lancer_core::intersector::{Hit, Probe};
 use lancer_core::scene::{PrimitiveId, Shape};
 
-use super::lanes::{Lanes, difference, gather};
+use super::lanes::{Lanes, difference};
 use super::{Child, Wide};
 use crate::pending::Lanes as Bits;
 
@@ -68,8 +68,8 @@ fn test_four<L: Lanes>(
     probe: &mut Probe,
 ) {
     let [origin, direction] =
-        [gather(lanes, [ray.origin; FOUR]), gather(lanes, [ray.direction; FOUR])];
-    let f = difference(origin, gather(lanes, centers));
+        [lanes.vectors([ray.origin; FOUR]).0, lanes.vectors([ray.direction; FOUR]).0];
+    let f = difference(origin, lanes.vectors(centers).0);
     let [min, endless] = [lanes.four([range.min; FOUR]), lanes.four([f64::INFINITY; FOUR])];
     let met = intersect_spheres(f, lanes.four(radii), direction, [min, endless]);
     let Some((t, met)) = met else { return };

@@ -8,7 +8,7 @@
 //! | set    | numbers 0 and 1                                                | numbers 2 and 3            |
 //! |--------|----------------------------------------------------------------|----------------------------|
 //! | 0      | the film point in its pixel, by [`Pattern::Owen`]; further on the direction of the ray that led here | the point on the first lamp |
-//! | 1      | which way the ray goes on, and whether                         | which lamp is asked, –     |
+//! | 1      | which way the ray goes on, and whether                         | which light is asked       |
 //! | 2      | the point of the lens                                          | the time, –                |
 //! | 3 …    | the point on the next lamp                                     | that on the one after      |
 //!

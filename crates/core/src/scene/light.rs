@@ -51,6 +51,12 @@ pub enum Emitter {
     },
 }
 
+impl From<&PointLight> for PointSource {
+    fn from(&PointLight { position, intensity }: &PointLight) -> Self {
+        Self { position, intensity, emitter: Emitter::Point }
+    }
+}
+
 impl PointSource {
     /// The intensity in the direction `-to_light`, where `to_light` is unit and points at the source.
     #[inline(always)]
@@ -177,11 +183,7 @@ impl Scene {
     /// A sphere of radius r becomes a source of intensity L r² at its centre, which shines as much on a surface that
     /// sees all of it. A shadow ray ends where it enters the sphere, as much before it.
     pub fn point_sources(&self) -> Vec<PointSource> {
-        let points = self.lights.iter().map(|light| PointSource {
-            position: light.position,
-            intensity: light.intensity,
-            emitter: Emitter::Point,
-        });
+        let points = self.lights.iter().map(PointSource::from);
         let (faces, spheres) = (self.area_lights(), self.sphere_lights());
         let is_any = !(faces.is_empty() && spheres.is_empty());
         let clearance = if is_any { self.shadow_end_error() } else { 0.0 };

@@ -4,7 +4,7 @@
 #[allow(unsafe_code)]
 mod avx2;
 
-use glam::{DVec3, DVec4};
+use glam::DVec4;
 use lancer_core::geometry::Real;
 use lancer_core::lanes::{FourLanes, Scalar};
 
@@ -90,12 +90,6 @@ pub(super) fn dot<L: Lanes>(l: L, a: Vectors<L>, b: Vectors<L>) -> L::F {
 #[inline(always)]
 pub(super) fn difference<T: Real>(a: [T; 3], b: [T; 3]) -> [T; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-/// The components of four vectors.
-#[inline(always)]
-pub(super) fn gather<L: Lanes>(l: L, [a, b, c, d]: [DVec3; 4]) -> [L::D; 3] {
-    [l.four([a.x, b.x, c.x, d.x]), l.four([a.y, b.y, c.y, d.y]), l.four([a.z, b.z, c.z, d.z])]
 }
 
 /// The smallest of eight numbers, none of which is NaN.
